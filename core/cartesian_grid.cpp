@@ -6,7 +6,8 @@
 
 namespace pellicle {
 
-CartesianGrid::CartesianGrid(const Box& box, Index3 cells, std::array<bool, 3> periodic) : periodic_(periodic) {
+CartesianGrid::CartesianGrid(const Box& box, Index3 cells, std::array<bool, 3> periodic)
+    : periodic_(periodic) {
   for (int axis = 0; axis < 3; ++axis) {
     if (cells[axis] < 1) throw std::invalid_argument("a grid needs at least one cell along each axis");
     auto& f = faces_[static_cast<std::size_t>(axis)];

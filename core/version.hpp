@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace pellicle::core {
+namespace pellicle {
 
 /// Version number of the program, for example "0.1.0".
 std::string version();
@@ -13,4 +13,4 @@ std::string commit();
 /// Several lines for `--version` and the log: version, commit, build type, Kokkos and its backends, compiler.
 std::string version_text();
 
-} // namespace pellicle::core
+}  // namespace pellicle

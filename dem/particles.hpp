@@ -9,16 +9,16 @@ namespace pellicle::dem {
 
 /// What the contact search needs of a particle, in half a cache line: a partner is gathered with one load.
 struct alignas(32) PositionRadius {
-  Real x, y, z;   ///< centre [m]
-  Real radius;    ///< [m]
+  Real x, y, z;  ///< centre [m]
+  Real radius;   ///< [m]
   KOKKOS_INLINE_FUNCTION Vec3 position() const { return {x, y, z}; }
 };
 
 /// What the contact force needs of a partner beyond its place, in one cache line.
 struct alignas(64) VelocitySpin {
-  Real vx, vy, vz;     ///< velocity [m/s], at the time of the position
-  Real wx, wy, wz;     ///< angular velocity [rad/s], at the time of the position
-  Real inverse_mass;   ///< [1/kg]; 0 for a fixed particle
+  Real vx, vy, vz;        ///< velocity [m/s], at the time of the position
+  Real wx, wy, wz;        ///< angular velocity [rad/s], at the time of the position
+  Real inverse_mass;      ///< [1/kg]; 0 for a fixed particle
   std::int32_t material;  ///< index into the case's materials
   std::int32_t id;        ///< never changes, unlike the particle's place in the arrays
   KOKKOS_INLINE_FUNCTION Vec3 velocity() const { return {vx, vy, vz}; }
@@ -32,9 +32,9 @@ struct Particles {
   Index count = 0;
   DeviceArray<PositionRadius> position_radius;
   DeviceArray<VelocitySpin> velocity_spin;
-  DeviceArray<Real> mass;                 ///< [kg], also of a fixed particle
-  DeviceArray<Vec3> acceleration;         ///< [m/s2], of the last substep
-  DeviceArray<Vec3> angular_acceleration; ///< [rad/s2], of the last substep
+  DeviceArray<Real> mass;                  ///< [kg], also of a fixed particle
+  DeviceArray<Vec3> acceleration;          ///< [m/s2], of the last substep
+  DeviceArray<Vec3> angular_acceleration;  ///< [rad/s2], of the last substep
 };
 
 }  // namespace pellicle::dem
