@@ -1,0 +1,254 @@
+// What a case file says, as plain structs in SI units, with every default filled in. The keys have the same names in
+// the case file; docs/case_file.md describes each. Nothing here knows YAML.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/cartesian_grid.hpp"
+#include "core/types.hpp"
+#include "core/vector.hpp"
+
+namespace pellicle::tools {
+
+/// Sides of the domain; in the case file left, right, front, back, bottom, top.
+enum class Side { x_min, x_max, y_min, y_max, z_min, z_max };
+
+struct DomainSpec {
+  Box box;  ///< [m]
+  std::array<bool, 3> periodic{false, false, false};
+};
+
+struct TimeSpec {
+  Real end = 0;  ///< [s]
+  /// Outer step [s]; without gas, how often the loop looks at outputs (default 10 particle steps).
+  Real gas_step = 0;
+  /// [s]; gas_step / particle_step is a whole number; equals gas_step without particles.
+  Real particle_step = 0;
+  Real impact_speed = 0;          ///< largest impact speed expected, for the bound on particle_step [m/s]
+  Real settle = 0;                ///< gas off, for so long before t = 0 [s]
+  bool allow_large_step = false;  ///< particle_step over the bound is a warning, not an error
+
+  /// Substeps an outer step: gas_step / particle_step.
+  Index substeps() const { return static_cast<Index>(gas_step / particle_step + 0.5); }
+};
+
+/// Both name and order of `CaseSpec::materials` are kept from the file; materials that only walls name come last.
+struct MaterialSpec {
+  std::string name;
+  bool rigid = false;       ///< named by a wall but not among `materials`: has none of the properties below
+  Real density = 0;         ///< [kg/m3]
+  Real youngs_modulus = 0;  ///< [Pa]
+  Real poisson_ratio = 0;
+};
+
+struct PairSpec {
+  std::string where;                   ///< `file:line: key.path`, for messages, here and in the structs below
+  int material_a = 0, material_b = 0;  ///< indices into CaseSpec::materials
+  Real restitution = 0;
+  Real sliding_friction = 0;
+  Real rolling_friction = 0;  ///< ratio to the reduced radius R*
+};
+
+struct ContactSpec {
+  std::string normal = "hertz";
+  std::string tangential = "viscous_coulomb";
+  std::string rolling = "constant_torque";
+  bool clip = true;          ///< no attraction at release; the damping then is the one that gives back e
+  Real overlap_limit = 0.5;  ///< a larger overlap stops the run; fraction of the (smaller) radius
+  std::vector<PairSpec> pairs;
+};
+
+struct CylinderSpec {
+  Vec3 from, to;    ///< ends of the axis [m]
+  Real radius = 0;  ///< [m]
+};
+
+enum class FillPattern { lattice, random };
+
+struct FillSpec {
+  std::string where;
+  std::optional<Box> box;  ///< exactly one of box and cylinder
+  std::optional<CylinderSpec> cylinder;
+  FillPattern pattern = FillPattern::random;
+  std::optional<Real> solids_fraction;  ///< how many particles, when neither count nor total_mass is given
+};
+
+struct ListedParticleSpec {
+  Vec3 position;      ///< [m]
+  Vec3 velocity;      ///< [m/s]
+  Vec3 spin;          ///< [rad/s]
+  Real diameter = 0;  ///< [m]
+  bool fixed = false;
+};
+
+/// Particles of one material: either a fill or a list.
+struct PopulationSpec {
+  std::string where;
+  int material = 0;  ///< index into CaseSpec::materials
+  std::optional<Index>
+      count;  ///< of count, total_mass and fill->solids_fraction exactly one is set with a fill
+  std::optional<Real> total_mass;  ///< [kg]
+  Real diameter = 0;               ///< of a filled population [m]; 0 if every listed particle has its own
+  Vec3 velocity;                   ///< initial, of a filled population; default of listed particles [m/s]
+  Vec3 spin;                       ///< likewise [rad/s]
+  bool fixed = false;              ///< likewise: never moves, but is felt by others and by the gas
+  std::optional<FillSpec> fill;
+  std::vector<ListedParticleSpec> list;
+};
+
+struct PlaneSpec {
+  Vec3 point;   ///< [m]
+  Vec3 normal;  ///< of length 1, into the domain
+};
+
+struct WallSpec {
+  std::string where;
+  std::string name;
+  bool box = false;        ///< the six sides of the domain; else a plane
+  std::vector<Side> open;  ///< sides of the box that are left out: particles leave there
+  std::optional<PlaneSpec> plane;
+  int material = 0;  ///< index into CaseSpec::materials
+  Vec3 velocity;     ///< of the surface; the wall stays in place, like a belt [m/s]
+};
+
+struct GridSpec {
+  Index3 cells{0, 0, 0};
+  std::array<std::vector<Real>, 3> faces;  ///< face coordinates, cells + 1 a side [m]; always filled in
+};
+
+struct InletSpec {
+  std::optional<Real> velocity;   ///< superficial, inward [m/s]; exactly one of the two is set
+  std::optional<Real> flow_rate;  ///< [m3/s]
+};
+struct OutletSpec {
+  Real pressure = 0;  ///< [Pa]
+};
+struct NoSlipSpec {
+  Vec3 velocity;  ///< [m/s]
+};
+
+struct BoundarySpec {
+  std::string where;
+  std::string name;
+  Side on = Side::z_min;
+  std::optional<Box> region;       ///< unset: the rest of that side
+  std::optional<InletSpec> inlet;  ///< exactly one of these five is set
+  std::optional<OutletSpec> outlet;
+  std::optional<NoSlipSpec> wall;
+  bool free_slip = false;
+  bool symmetry = false;
+};
+
+struct GasSolverSpec {
+  Real pressure_tolerance = 1e-8;  ///< relative, of the last pressure solve of a step
+  Real momentum_tolerance = 1e-8;  ///< relative
+  Real outer_tolerance = 1e-6;     ///< relative change that ends the outer iterations
+  int max_outer_iterations = 20;
+  int max_linear_iterations = 500;
+};
+
+struct GasSpec {
+  Real density = 0;    ///< [kg/m3]
+  Real viscosity = 0;  ///< dynamic [Pa s]
+  Vec3 velocity;       ///< initial [m/s]
+  Vec3 body_force;     ///< on the gas, per volume, besides gravity [N/m3]
+  GridSpec grid;
+  std::string convection = "ultimate_quickest";
+  std::vector<BoundarySpec> boundaries;  ///< a side (or the rest of one) that none names is a no-slip wall
+  GasSolverSpec solver;
+};
+
+enum class Coefficients { gas_step, substep };
+enum class Exchange { implicit, explicit_, one_way };
+
+struct CouplingSpec {
+  std::string drag = "beetstra";
+  std::string deposition = "divided";
+  GridSpec transfer_grid;  ///< default: the gas grid
+  Exchange exchange = Exchange::implicit;
+  bool pressure_gradient_force = true;
+  Coefficients coefficients = Coefficients::gas_step;
+  Real minimum_void_fraction = 0.36;
+};
+
+/// An interval of simulated time; both ends are filled in.
+struct WindowSpec {
+  Real from = 0, to = 0;  ///< [s]
+};
+
+struct SnapshotSpec {
+  Real every = 0;                      ///< [s]; 0: none
+  std::vector<std::string> particles;  ///< names of fields
+  std::vector<std::string> gas;
+};
+
+/// Time-averaged profile along a line: bins of length / points, height `thickness`.
+struct LineSpec {
+  std::string where;
+  std::string name;
+  Vec3 from, to;  ///< [m]
+  Index points = 0;
+  std::optional<int> depth_average;  ///< axis 0, 1, 2 over whose whole length a bin extends
+  Real thickness = 0;                ///< size of a bin across the line [m]
+  std::string quantity;
+  WindowSpec average;
+};
+
+/// A time series at a point, of one particle, or of the whole bed.
+struct ProbeSpec {
+  std::string where;
+  std::string name;
+  std::optional<Vec3> point;      ///< exactly one of the three is set [m]
+  std::optional<Index> particle;  ///< id
+  bool bed = false;
+  std::vector<std::string> quantities;
+  Real every = 0;  ///< [s]
+};
+
+/// Distribution of a particle quantity at given times.
+struct HistogramSpec {
+  std::string where;
+  std::string name;
+  std::string quantity;
+  Index bins = 50;
+  std::optional<Real> min, max;  ///< in the quantity's unit; unset: from the particles
+  bool by_mass = false;
+  Real every = 0;  ///< [s]
+};
+
+struct OutputSpec {
+  Real checkpoint_every = 0;  ///< [s]; 0: only at the end
+  SnapshotSpec snapshots;
+  std::vector<LineSpec> lines;
+  std::vector<ProbeSpec> probes;
+  std::vector<HistogramSpec> histograms;
+};
+
+struct CaseSpec {
+  std::string file;  ///< as the user wrote it
+  std::string title;
+  std::uint64_t seed = 1;
+  DomainSpec domain;
+  Vec3 gravity{0, 0, -9.81};  ///< [m/s2]
+  TimeSpec time;
+  std::vector<MaterialSpec> materials;
+  ContactSpec contacts;
+  std::vector<PopulationSpec> particles;  ///< empty: pure CFD
+  std::vector<WallSpec> walls;
+  std::optional<GasSpec> gas;  ///< unset: pure DEM
+  CouplingSpec coupling;       ///< of use only with both gas and particles
+  OutputSpec output;
+  std::vector<std::string> warnings;  ///< each `file:line: key.path: ...`; the run goes on
+  std::map<std::string, std::string>
+      lines;  ///< key path -> `file:line` (or `--set`), of every key that was given
+
+  /// `file:line: key.path` of a key such as `time.gas_step`, for messages; without a line if it was not given.
+  std::string where(const std::string& path) const;
+};
+
+}  // namespace pellicle::tools
