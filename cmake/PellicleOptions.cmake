@@ -3,6 +3,7 @@
 option(PELLICLE_NATIVE "Compile for this machine's processor (-march=native)" ON)
 option(PELLICLE_WERROR "Treat warnings as errors" ON)
 option(PELLICLE_BENCHMARKS "Build the benchmarks" ON)
+option(PELLICLE_CUDA_CHECK "Only compile every kernel for an NVIDIA GPU, without linking or running it" OFF)
 set(PELLICLE_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
 
 set(PELLICLE_DEPS "auto" CACHE STRING "Where Kokkos and AMGCL come from: auto, system, fetch or debian")

@@ -43,6 +43,20 @@ function(pellicle_folder name)
   endif()
 endfunction()
 
+# The preset cuda-check: its only target runs the script, which knows by itself what has changed.
+function(pellicle_cuda_check)
+  get_target_property(kokkos_headers Kokkos::kokkoscore INTERFACE_INCLUDE_DIRECTORIES)
+  string(GENEX_STRIP "${kokkos_headers}" stripped)
+  if(NOT stripped) # sources fetched by CMake: the folders stand in build-interface expressions
+    string(REGEX REPLACE "\\$<BUILD_INTERFACE:([^>]*)>" "\\1" kokkos_headers "${kokkos_headers}")
+    string(GENEX_STRIP "${kokkos_headers}" stripped)
+  endif()
+  add_custom_target(cuda-check ALL
+    COMMAND "${Python3_EXECUTABLE}" "${CMAKE_SOURCE_DIR}/tools/setup/cuda_check.py"
+      --output "${CMAKE_BINARY_DIR}" --kokkos-include "${stripped}"
+    USES_TERMINAL VERBATIM)
+endfunction()
+
 # The command itself, and its place in an installation.
 function(pellicle_program)
   file(GLOB main CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/tools/pellicle/main.cpp")

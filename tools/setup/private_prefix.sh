@@ -41,7 +41,7 @@ options=""
 
 new="$deps/.filling"
 rm -rf "$new"
-mkdir -p "$new/state/lists/partial" "$new/cache/archives/partial" "$new/debs" "$new/root"
+mkdir -p "$new/state/lists/partial" "$new/cache/archives/partial" "$new/debs" "$new/unpacked"
 for suite in trixie sid; do
   echo "deb $options$mirror $suite main"
 done >"$new/sources.list"
@@ -67,13 +67,13 @@ echo "private prefix: fetching $library, AMGCL and the C and C++ libraries"
 (cd "$new/debs" && apt-get "${apt_options[@]}" -qq download libkokkos-dev/sid "$library/sid" libamgcl-dev/sid \
   libc6/trixie libstdc++6/trixie libgcc-s1/trixie libgomp1/trixie)
 for package in "$new"/debs/*.deb; do
-  dpkg -x "$package" "$new/root"
+  dpkg -x "$package" "$new/unpacked"
 done
 
-usr="$new/root/usr"
+usr="$new/unpacked/usr"
 # Where the suite keeps /lib apart from /usr/lib, bring both together.
-if [[ -d $new/root/lib && ! -L $new/root/lib ]]; then
-  cp -a "$new/root/lib/." "$usr/lib/"
+if [[ -d $new/unpacked/lib && ! -L $new/unpacked/lib ]]; then
+  cp -a "$new/unpacked/lib/." "$usr/lib/"
 fi
 
 # The C and C++ libraries fetched must be new enough for what the Kokkos library asks.
