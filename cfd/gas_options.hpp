@@ -1,0 +1,52 @@
+// What a case chooses about the gas: properties, schemes, tolerances.
+#pragma once
+
+#include <string_view>
+
+#include "core/model_list.hpp"
+#include "core/types.hpp"
+#include "core/vector.hpp"
+
+namespace pellicle::cfd {
+
+/// How the convected velocity is taken from the cells to their faces.
+enum class Convection { upwind, ultimate_quickest, central, quick };
+
+/// Names of the case file, what they are, and where they come from; in the order of the enum.
+inline constexpr core::ModelInfo convection_models[] = {
+    {"upwind", "first order, bounded, most diffusive", "Courant, Isaacson & Rees 1952"},
+    {"ultimate_quickest", "third-order upwind-biased face value with the ULTIMATE limiter",
+     "Leonard 1991, without Courant terms since the step is implicit"},
+    {"central", "linear interpolation, second order, not bounded", "any textbook"},
+    {"quick", "third-order upwind-biased face value, not bounded", "Leonard 1979"},
+};
+
+/// Which solver the pressure equation gets; both give the same answer to within the tolerance.
+enum class PressureSolver {
+  multigrid,  ///< conjugate gradients with a geometric multigrid cycle on the 7-point stencil, rebuilt every solve
+  amgcl       ///< conjugate gradients with AMGCL's smoothed aggregation, hierarchy kept while it still serves
+};
+
+struct GasSolverOptions {
+  Real pressure_tolerance = 1e-11;  ///< of the last pressure solve: sum of |mass residuals| / gas throughput
+  Real loose_pressure_tolerance =
+      1e-3;                        ///< of the pressure solves before the last: reduction of the residual
+  Real momentum_tolerance = 1e-9;  ///< relative to the momentum the gas exchanges in the step
+  Real outer_tolerance = 1e-6;     ///< relative change of the face velocities that ends the outer iterations
+  int max_outer_iterations = 2;    ///< of the SIMPLEC loop, each one pressure and one momentum solve
+  int max_linear_iterations = 500;
+  Real velocity_relaxation = 1;  ///< in (0, 1]; below 1 only for steps of many Courant numbers
+  PressureSolver pressure_solver = PressureSolver::multigrid;
+};
+
+struct GasOptions {
+  Real density = 0;    ///< [kg/m3]
+  Real viscosity = 0;  ///< dynamic [Pa s]
+  /// [m/s2]. The pressure solved for is p - density gravity.x, so gravity moves nothing by itself.
+  Vec3 gravity{0, 0, -9.81};
+  Vec3 body_force;  ///< on the gas, besides gravity, per volume of gas [N/m3]
+  Convection convection = Convection::ultimate_quickest;
+  GasSolverOptions solver;
+};
+
+}  // namespace pellicle::cfd
