@@ -66,11 +66,6 @@ find_package(Boost REQUIRED)
 target_include_directories(pellicle_amgcl SYSTEM INTERFACE ${amgcl_headers})
 target_link_libraries(pellicle_amgcl INTERFACE OpenMP::OpenMP_CXX Boost::headers)
 
-if(Kokkos_ENABLE_CUDA)
-  message(STATUS "Kokkos has CUDA: device code runs on the GPU")
-  target_compile_options(pellicle_flags INTERFACE -Wno-error)
-endif()
-
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(yaml-cpp REQUIRED)

@@ -1,4 +1,4 @@
-# Options, build type, compiler flags, and the loader flags of the private prefix.
+# Options, build type, compiler flags.
 
 option(PELLICLE_NATIVE "Compile for this machine's processor (-march=native)" ON)
 option(PELLICLE_WERROR "Treat warnings as errors" ON)
@@ -41,16 +41,6 @@ target_compile_options(pellicle_flags INTERFACE $<$<NOT:$<CONFIG:Debug>>:-fno-ma
 if(PELLICLE_NATIVE)
   target_compile_options(pellicle_flags INTERFACE -march=native)
 endif()
-
-set(PELLICLE_WARNINGS -Wall -Wextra -Wshadow -Wconversion)
-if(NOT Kokkos_ENABLE_CUDA)
-  list(APPEND PELLICLE_WARNINGS -Wpedantic)
-endif()
-if(PELLICLE_WERROR)
-  # Newer Kokkos releases deprecate before they remove: that must not stop a build.
-  list(APPEND PELLICLE_WARNINGS -Werror -Wno-error=deprecated-declarations)
-endif()
-target_compile_options(pellicle_flags INTERFACE ${PELLICLE_WARNINGS})
 
 target_include_directories(pellicle_flags INTERFACE "${CMAKE_SOURCE_DIR}")
 
