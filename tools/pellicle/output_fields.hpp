@@ -1,0 +1,93 @@
+// What can be written to the results folder: the names that the case file takes, one list for each kind of output.
+// Every description ends with the unit in square brackets, which is also what column headers show.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "core/model_list.hpp"
+
+namespace pellicle::tools {
+
+/// Fields of a particle snapshot (particles.h5); the position is always written.
+inline constexpr std::array<core::ModelInfo, 9> particle_snapshot_fields{{
+    {"id", "number of the particle, the same through the run [-]"},
+    {"velocity", "velocity of the centre, three components [m/s]"},
+    {"spin", "angular velocity, three components [rad/s]"},
+    {"radius", "radius [m]"},
+    {"diameter", "diameter [m]"},
+    {"mass", "mass, also of a fixed particle [kg]"},
+    {"material", "number of the material, in the order of the case file [-]"},
+    {"speed", "magnitude of the velocity [m/s]"},
+    {"acceleration", "acceleration in the last substep, three components [m/s2]"},
+}};
+
+/// Fields of a gas snapshot (gas.h5), all at cell centres.
+inline constexpr std::array<core::ModelInfo, 5> gas_snapshot_fields{{
+    {"velocity", "interstitial gas velocity, three components [m/s]"},
+    {"pressure", "gas pressure without its hydrostatic part [Pa]"},
+    {"void_fraction", "fraction of the cell that is gas [-]"},
+    {"solids_fraction", "fraction of the cell that is particles [-]"},
+    {"pressure_gradient", "gradient of the pressure, three components [Pa/m]"},
+}};
+
+/// One number of one particle: what lines, histograms and particle probes can show. The position in this list is the
+/// code that the device functions take (ParticleQuantity in particle_quantities.hpp).
+inline constexpr std::array<core::ModelInfo, 14> particle_quantities{{
+    {"particle_velocity_x", "x component of the particle velocity [m/s]"},
+    {"particle_velocity_y", "y component of the particle velocity [m/s]"},
+    {"particle_velocity_z", "z component of the particle velocity [m/s]"},
+    {"particle_speed", "magnitude of the particle velocity [m/s]"},
+    {"particle_spin_x", "x component of the particle's angular velocity [rad/s]"},
+    {"particle_spin_y", "y component of the particle's angular velocity [rad/s]"},
+    {"particle_spin_z", "z component of the particle's angular velocity [rad/s]"},
+    {"particle_position_x", "x coordinate of the particle's centre [m]"},
+    {"particle_position_y", "y coordinate of the particle's centre [m]"},
+    {"particle_position_z", "z coordinate of the particle's centre [m]"},
+    {"particle_diameter", "diameter of the particle [m]"},
+    {"particle_mass", "mass of the particle [kg]"},
+    {"particle_kinetic_energy", "kinetic energy of translation of the particle [J]"},
+    {"particle_acceleration_z", "z component of the particle's acceleration in the last substep [m/s2]"},
+}};
+
+/// One number of one gas cell: what lines and point probes can show, in the order of GasQuantity.
+inline constexpr std::array<core::ModelInfo, 10> gas_quantities{{
+    {"gas_velocity_x", "x component of the interstitial gas velocity [m/s]"},
+    {"gas_velocity_y", "y component of the interstitial gas velocity [m/s]"},
+    {"gas_velocity_z", "z component of the interstitial gas velocity [m/s]"},
+    {"gas_speed", "magnitude of the interstitial gas velocity [m/s]"},
+    {"superficial_velocity_x", "x component of void fraction times gas velocity [m/s]"},
+    {"superficial_velocity_y", "y component of void fraction times gas velocity [m/s]"},
+    {"superficial_velocity_z", "z component of void fraction times gas velocity [m/s]"},
+    {"pressure", "gas pressure without its hydrostatic part [Pa]"},
+    {"void_fraction", "fraction of the volume that is gas [-]"},
+    {"solids_fraction", "fraction of the volume that is particles [-]"},
+}};
+
+/// Columns of a bed probe.
+inline constexpr std::array<core::ModelInfo, 11> bed_quantities{{
+    {"bed_height",
+     "height below which 99 % of the particles' centres lie, above the floor of the domain [m]"},
+    {"mean_height", "mean height of the particles' centres, weighted by mass, above the floor [m]"},
+    {"mean_speed", "mean speed of the particles [m/s]"},
+    {"largest_speed", "speed of the fastest particle [m/s]"},
+    {"kinetic_energy", "kinetic energy of translation of all particles [J]"},
+    {"pressure_drop", "mean gas pressure of the lowest minus that of the highest layer of cells [Pa]"},
+    {"gas_kinetic_energy", "kinetic energy of all gas [J]"},
+    {"contacts_per_particle", "twice the touching pairs of particles over the number of particles [-]"},
+    {"largest_overlap", "largest overlap since the last line, as a fraction of the radius [-]"},
+    {"particles", "number of particles in the domain [-]"},
+    {"solids_volume", "volume of all particles [m3]"},
+}};
+
+/// All quantities a line may show: particle_quantities, then gas_quantities.
+std::string line_quantity_names();
+
+/// The unit at the end of a description, without brackets: "m/s".
+std::string_view unit_of(const core::ModelInfo& info);
+
+/// "particle_speed [m/s]", the header of a column; the bare name if the quantity is unknown.
+std::string column_header(std::string_view quantity);
+
+}  // namespace pellicle::tools
