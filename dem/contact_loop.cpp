@@ -1,0 +1,314 @@
+#include "dem/contact_loop.hpp"
+
+#include "dem/contact_force.hpp"
+
+namespace pellicle::dem {
+namespace {
+
+struct Accumulator {
+  Vec3 force{}, torque{};
+};
+
+/// Moment of inertia of a solid sphere over mass, as its inverse: 1/I = 2.5/(m R²); 0 for a fixed particle.
+KOKKOS_INLINE_FUNCTION Real inverse_inertia(Real inverse_mass, Real radius) {
+  return 2.5 * inverse_mass / (radius * radius);
+}
+
+/// Extremes and impulses go on, counts start anew.
+KOKKOS_INLINE_FUNCTION BlockReport start_report(BlockReport report) {
+  report.touching = 0;
+  report.touching_walls = 0;
+  return report;
+}
+
+/// Contacts of particle p with the walls of its row, added to its sums.
+template <class Laws>
+KOKKOS_INLINE_FUNCTION void add_wall_contacts(const ContactInput& in, const Laws& laws,
+                                              const DeviceArray<std::int32_t>& touching, Index p,
+                                              Accumulator& sum, BlockReport& report, std::int32_t& contacts) {
+  const std::int32_t end = in.list.wall_offset(p + 1);
+  for (std::int32_t slot = in.list.wall_offset(p); slot < end; ++slot) {
+    const DevicePlane wall = in.walls(in.list.wall(slot));
+    const PositionRadius self = in.particles.position_radius(p);
+    const Real distance = wall.distance(self.position());
+    if (distance >= self.radius) continue;
+    const VelocitySpin motion = in.particles.velocity_spin(p);
+    const PairParameters& pair = in.table(motion.material * in.materials + wall.material);
+    const Vec3 n = -wall.normal;
+    const Vec3 dv = motion.velocity() - wall.velocity;
+    // A fixed particle has no inverse mass, and nothing acts on it: any finite reduced mass will do.
+    const Real reduced_mass = motion.inverse_mass > 0 ? 1 / motion.inverse_mass : in.particles.mass(p);
+    const ContactState c{self.radius - distance, self.radius, reduced_mass, dot(dv, n)};
+    const Real compliance = touching(p) * inverse_inertia(motion.inverse_mass, self.radius);
+    const ContactForce f =
+        laws(c, pair, n, dv, distance * motion.spin(), distance, motion.spin(), compliance);
+    sum.force += f.force;
+    sum.torque += f.torque + f.rolling_torque;
+    if (motion.inverse_mass > 0) report.wall_impulse += in.kick * f.force;
+    ++contacts;
+    ++report.touching_walls;
+    report.largest_overlap = Kokkos::max(report.largest_overlap, c.overlap / self.radius);
+    report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
+  }
+}
+
+/// One pair contact seen from particle i. `d` from i to its partner, with |d|² = s2 < (r_i + r_j)².
+template <class Laws>
+KOKKOS_INLINE_FUNCTION ContactForce pair_force(const Laws& laws, const PairParameters& pair, const Vec3& d,
+                                               Real s2, Real ri, Real rj, Real inverse_mass_sum,
+                                               const Vec3& dv, const Vec3& spin_i, const Vec3& spin_j,
+                                               Real spin_compliance, ContactState& c) {
+  const Real s = Kokkos::sqrt(s2);
+  const Real inverse_s = 1 / s;
+  const Real sum = ri + rj;
+  const Vec3 n = inverse_s * d;
+  // Lever arms to the plane through the circle where the spheres meet: l_i + l_j = s exactly.
+  const Real skew = (ri - rj) * sum * inverse_s;
+  const Real li = 0.5 * (s + skew);
+  const Real lj = 0.5 * (s - skew);
+  c.overlap = sum - s;
+  c.reduced_radius = ri * rj / sum;
+  c.reduced_mass = 1 / inverse_mass_sum;
+  c.approach_speed = dot(dv, n);
+  return laws(c, pair, n, dv, li * spin_i + lj * spin_j, li, spin_i - spin_j, spin_compliance);
+}
+
+/// One particle a work item: the form for a GPU.
+template <class Laws>
+struct ParticleContactKernel {
+  ContactInput in;
+  ContactResult out;
+  Laws laws;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index block) const {
+    BlockReport report = start_report(out.report(block));
+    const Index begin = block * contact_block;
+    const Index end = Kokkos::min(begin + contact_block, in.particles.count);
+    for (Index p = begin; p < end; ++p) compute(p, report);
+    out.report(block) = report;
+  }
+
+  KOKKOS_INLINE_FUNCTION void compute(Index p, BlockReport& report) const {
+    Accumulator sum;
+    std::int32_t contacts = 0;
+    const PositionRadius a = in.particles.position_radius(p);
+    const VelocitySpin ma = in.particles.velocity_spin(p);
+    const std::int32_t last = in.list.offset(p + 1);
+    for (std::int32_t slot = in.list.offset(p); slot < last; ++slot) {
+      const Index q = in.list.partner(slot);
+      const PositionRadius b = in.particles.position_radius(q);
+      const Vec3 d = in.domain.shortest(b.position() - a.position());
+      const Real s2 = norm_squared(d);
+      const Real reach = a.radius + b.radius;
+      if (s2 >= reach * reach) continue;
+      const VelocitySpin mb = in.particles.velocity_spin(q);
+      const Real mass_sum = ma.inverse_mass + mb.inverse_mass;
+      const Real compliance = out.touching(p) * inverse_inertia(ma.inverse_mass, a.radius) +
+                              out.touching(q) * inverse_inertia(mb.inverse_mass, b.radius);
+      ContactState c;
+      const ContactForce f = pair_force(laws, in.table(ma.material * in.materials + mb.material), d, s2,
+                                        a.radius, b.radius, mass_sum > 0 ? mass_sum : Real(1),
+                                        ma.velocity() - mb.velocity(), ma.spin(), mb.spin(), compliance, c);
+      sum.force += f.force;
+      sum.torque += f.torque + f.rolling_torque;
+      ++contacts;
+      ++report.touching;
+      report.largest_overlap =
+          Kokkos::max(report.largest_overlap, c.overlap / Kokkos::min(a.radius, b.radius));
+      report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
+    }
+    if (ma.inverse_mass == 0) report.support_impulse += in.kick * sum.force;
+    add_wall_contacts(in, laws, out.touching, p, sum, report, contacts);
+    out.force(p) = sum.force;
+    out.torque(p) = sum.torque;
+    out.touching_new(p) = contacts;
+  }
+};
+
+/// Touching pairs of a block side by side, one array a quantity, so that the laws run in vector registers.
+struct PairBuffer {
+  static constexpr int capacity = 256;
+  alignas(64) Real dx[capacity], dy[capacity], dz[capacity], s2[capacity];
+  alignas(64) Real ri[capacity], rj[capacity], inverse_mass_sum[capacity], compliance[capacity];
+  alignas(64) Real dvx[capacity], dvy[capacity], dvz[capacity];
+  alignas(64) Real wix[capacity], wiy[capacity], wiz[capacity];
+  alignas(64) Real wjx[capacity], wjy[capacity], wjz[capacity];
+  // On return, the force in d and the torque in dv: written over what was read.
+  alignas(64) Real overlap[capacity], approach[capacity];
+  alignas(64) std::int32_t pair[capacity];
+  std::int32_t owner[capacity];
+  int count = 0;
+};
+
+/// A block of particles a work item: scan rows, gather touching pairs, run the laws over them in vectors, add up.
+template <class Laws, bool OnePair>
+struct BlockContactKernel {
+  ContactInput in;
+  ContactResult out;
+  Laws laws;
+  bool repeats;
+
+  void operator()(const Index block) const {
+    PairBuffer buffer;
+    Accumulator sum[contact_block];
+    std::int32_t contacts[contact_block] = {};
+    BlockReport report = start_report(out.report(block));
+    const Index begin = block * contact_block;
+    const Index end = begin + contact_block < in.particles.count ? begin + contact_block : in.particles.count;
+    for (Index p = begin; p < end; ++p) {
+      std::int32_t slot = in.list.offset(p);
+      const std::int32_t last = in.list.offset(p + 1);
+      while (slot < last) {
+        const std::int32_t stop = last - slot < row_part ? last : slot + row_part;
+        if (buffer.count + (stop - slot) > PairBuffer::capacity) flush(buffer, sum, report);
+        contacts[p - begin] += gather(p, p - begin, slot, stop, buffer);
+        slot = stop;
+      }
+    }
+    flush(buffer, sum, report);
+    for (Index p = begin; p < end; ++p) {
+      std::int32_t& touched = contacts[p - begin];
+      report.touching += touched;
+      if (in.particles.velocity_spin(p).inverse_mass == 0) {
+        report.support_impulse += in.kick * sum[p - begin].force;
+      }
+      add_wall_contacts(in, laws, out.touching, p, sum[p - begin], report, touched);
+      out.force(p) = sum[p - begin].force;
+      out.torque(p) = sum[p - begin].torque;
+      out.touching_new(p) = touched;
+    }
+    out.report(block) = report;
+  }
+
+ private:
+  static constexpr bool rolling_active = Laws::rolling_active;
+  static constexpr std::int32_t row_part =
+      64;  // of a row scanned at once; a large particle may have many partners
+
+  /// Appends the touching partners among slots [slot, stop) of particle p.
+  int gather(Index p, std::int32_t owner, std::int32_t slot, std::int32_t stop, PairBuffer& buffer) const {
+    std::int32_t partner[row_part + 1];
+    const PositionRadius* const place = in.particles.position_radius.data();
+    const VelocitySpin* const motion = in.particles.velocity_spin.data();
+    const std::int32_t* const row = in.list.partner.data();
+    const PositionRadius a = place[p];
+    int found = 0;
+    // Without a branch: whether a neighbour touches cannot be predicted.
+    for (std::int32_t s = slot; s < stop; ++s) {
+      const std::int32_t q = row[s];
+      const PositionRadius b = place[q];
+      Vec3 d{b.x - a.x, b.y - a.y, b.z - a.z};
+      if (repeats) d = in.domain.shortest(d);
+      const Real reach = a.radius + b.radius;
+      partner[found] = q;
+      found += norm_squared(d) < reach * reach ? 1 : 0;
+    }
+    const VelocitySpin ma = motion[p];
+    const Real compliance_a =
+        rolling_active ? out.touching(p) * inverse_inertia(ma.inverse_mass, a.radius) : Real(0);
+    for (int k = 0; k < found; ++k) {
+      const std::int32_t q = partner[k];
+      const PositionRadius b = place[q];
+      const VelocitySpin mb = motion[q];
+      Vec3 d{b.x - a.x, b.y - a.y, b.z - a.z};
+      if (repeats) d = in.domain.shortest(d);
+      const int c = buffer.count + k;
+      buffer.dx[c] = d.x;
+      buffer.dy[c] = d.y;
+      buffer.dz[c] = d.z;
+      buffer.s2[c] = norm_squared(d);
+      buffer.ri[c] = a.radius;
+      buffer.rj[c] = b.radius;
+      const Real mass_sum = ma.inverse_mass + mb.inverse_mass;
+      buffer.inverse_mass_sum[c] = mass_sum > 0 ? mass_sum : Real(1);
+      if constexpr (rolling_active) {
+        buffer.compliance[c] = compliance_a + out.touching(q) * inverse_inertia(mb.inverse_mass, b.radius);
+      }
+      buffer.dvx[c] = ma.vx - mb.vx;
+      buffer.dvy[c] = ma.vy - mb.vy;
+      buffer.dvz[c] = ma.vz - mb.vz;
+      buffer.wix[c] = ma.wx;
+      buffer.wiy[c] = ma.wy;
+      buffer.wiz[c] = ma.wz;
+      buffer.wjx[c] = mb.wx;
+      buffer.wjy[c] = mb.wy;
+      buffer.wjz[c] = mb.wz;
+      if constexpr (!OnePair) buffer.pair[c] = ma.material * in.materials + mb.material;
+      buffer.owner[c] = owner;
+    }
+    buffer.count += found;
+    return found;
+  }
+
+  /// Runs the laws over the gathered pairs and adds the results to their owners, in list order.
+  void flush(PairBuffer& b, Accumulator* sum, BlockReport& report) const {
+    const int n = b.count;
+    b.count = 0;
+    const PairParameters* const table = in.table.data();
+    const PairParameters only = table[0];
+    const Laws law = laws;
+    Real largest_overlap = report.largest_overlap;
+    Real largest_approach = report.largest_approach_speed;
+#pragma omp simd reduction(max : largest_overlap, largest_approach)
+    for (int c = 0; c < n; ++c) {
+      ContactState state;
+      const ContactForce f = pair_force(
+          law, OnePair ? only : table[b.pair[c]], Vec3{b.dx[c], b.dy[c], b.dz[c]}, b.s2[c], b.ri[c], b.rj[c],
+          b.inverse_mass_sum[c], Vec3{b.dvx[c], b.dvy[c], b.dvz[c]}, Vec3{b.wix[c], b.wiy[c], b.wiz[c]},
+          Vec3{b.wjx[c], b.wjy[c], b.wjz[c]}, rolling_active ? b.compliance[c] : Real(0), state);
+      b.dx[c] = f.force.x;
+      b.dy[c] = f.force.y;
+      b.dz[c] = f.force.z;
+      b.dvx[c] = f.torque.x + f.rolling_torque.x;
+      b.dvy[c] = f.torque.y + f.rolling_torque.y;
+      b.dvz[c] = f.torque.z + f.rolling_torque.z;
+      const Real smaller = b.ri[c] < b.rj[c] ? b.ri[c] : b.rj[c];
+      const Real relative = state.overlap / smaller;
+      largest_overlap = relative > largest_overlap ? relative : largest_overlap;
+      largest_approach = state.approach_speed > largest_approach ? state.approach_speed : largest_approach;
+    }
+    report.largest_overlap = largest_overlap;
+    report.largest_approach_speed = largest_approach;
+    for (int c = 0; c < n; ++c) {
+      Accumulator& s = sum[b.owner[c]];
+      s.force += Vec3{b.dx[c], b.dy[c], b.dz[c]};
+      s.torque += Vec3{b.dvx[c], b.dvy[c], b.dvz[c]};
+    }
+  }
+};
+
+template <class Laws>
+void run_contact_kernel(const ContactInput& in, const Laws& laws, const ContactResult& out) {
+  const Index blocks = contact_block_count(in.particles.count);
+  if constexpr (std::is_same_v<Device, Host>) {
+    const bool repeats = in.domain.periodic.x + in.domain.periodic.y + in.domain.periodic.z != 0;
+    // Dense and dilute blocks cost differently: threads take them as they come. Blocks do not share results.
+    const Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>> range(0, blocks,
+                                                                               Kokkos::ChunkSize(4));
+    if (in.one_particle_material) {
+      Kokkos::parallel_for("dem::contact_loop::block_one_material", range,
+                           BlockContactKernel<Laws, true>{in, out, laws, repeats});
+    } else {
+      Kokkos::parallel_for("dem::contact_loop::block", range,
+                           BlockContactKernel<Laws, false>{in, out, laws, repeats});
+    }
+  } else {
+    Kokkos::parallel_for("dem::contact_loop::particle", DeviceRange(0, blocks),
+                         ParticleContactKernel<Laws>{in, out, laws});
+  }
+}
+
+}  // namespace
+
+void compute_contact_forces(const ContactInput& input, const ContactOptions& options,
+                            const ContactResult& result) {
+  std::visit(
+      [&](const auto& normal, const auto& tangential, const auto& rolling) {
+        using Laws = ContactLaws<std::decay_t<decltype(normal)>, std::decay_t<decltype(tangential)>,
+                                 std::decay_t<decltype(rolling)>>;
+        run_contact_kernel(input, Laws{normal, tangential, rolling}, result);
+      },
+      options.normal, options.tangential, options.rolling);
+}
+
+}  // namespace pellicle::dem

@@ -1,0 +1,56 @@
+// Contact forces on all particles: the loop that most of the time goes into.
+#pragma once
+
+#include <type_traits>
+
+#include "dem/contact_laws.hpp"
+#include "dem/neighbour_list.hpp"
+#include "dem/particles.hpp"
+#include "dem/walls.hpp"
+
+namespace pellicle::dem {
+
+/// What one block of particles reports about its contacts: extremes and impulses since the report was last cleared,
+/// counts of the last substep.
+struct BlockReport {
+  Real largest_overlap = 0;         ///< largest δ/R of the smaller particle [-]
+  Real largest_approach_speed = 0;  ///< [m/s]
+  Vec3 wall_impulse{};              ///< that walls gave to moving particles [N s]
+  Vec3 support_impulse{};           ///< that contacts gave to fixed particles [N s]
+  std::int64_t touching = 0;        ///< touching partners, each pair counted at both particles
+  std::int64_t touching_walls = 0;
+};
+
+/// Forces and torques by contact, and the reports of the blocks. All arrays are particle- or block-sized.
+struct ContactResult {
+  DeviceArray<Vec3> force;             ///< [N]
+  DeviceArray<Vec3> torque;            ///< [N m]
+  DeviceArray<std::int32_t> touching;  ///< partners and walls touched, of the last substep (rolling needs it)
+  DeviceArray<std::int32_t> touching_new;
+  DeviceArray<BlockReport> report;
+};
+
+/// Everything the contact loop reads.
+struct ContactInput {
+  Domain domain;
+  Particles particles;
+  NeighbourList list;
+  DeviceArray<DevicePlane> walls;
+  DeviceArray<PairParameters> table;  ///< materials²
+  Index materials = 1;
+  Real kick = 0;  ///< time over which these forces will act [s], for the impulses reported
+  bool one_particle_material = true;  ///< all particles are of material 0: the pair table is one entry
+};
+
+/// Particles a block. On a CPU enough to fill vectors with touching pairs, few enough to stay in the first-level cache;
+/// on a GPU every particle is a work item of its own.
+inline constexpr Index contact_block = std::is_same_v<Device, Host> ? 64 : 1;
+
+inline Index contact_block_count(Index particles) { return (particles + contact_block - 1) / contact_block; }
+
+/// Overwrites force, torque and touching_new with the contacts of this moment and carries the reports on. Deterministic: each particle
+/// sums its row in list order, whoever computes it.
+void compute_contact_forces(const ContactInput& input, const ContactOptions& options,
+                            const ContactResult& result);
+
+}  // namespace pellicle::dem

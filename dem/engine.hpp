@@ -1,0 +1,136 @@
+// The DEM engine: owns particles, lists and walls, and advances them by substeps.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/checkpoint.hpp"
+#include "core/timers.hpp"
+#include "dem/contact_loop.hpp"
+#include "dem/materials.hpp"
+#include "dem/motion.hpp"
+#include "dem/neighbour_list.hpp"
+#include "dem/particles.hpp"
+#include "dem/walls.hpp"
+
+namespace pellicle::dem {
+
+/// A particle to start with.
+struct ParticleSeed {
+  Vec3 position;     ///< [m]
+  Vec3 velocity{};   ///< [m/s]
+  Vec3 spin{};       ///< [rad/s]
+  Real radius = 0;   ///< [m]
+  int material = 0;  ///< index into the materials
+  bool fixed = false;
+};
+
+/// What an engine is made of.
+struct EngineSetup {
+  Domain domain;
+  std::vector<Material> materials;
+  std::vector<PairProperties> pairs;
+  ContactOptions contacts;
+  std::vector<PlaneWall> walls;
+  Vec3 gravity{};      ///< [m/s²]
+  Real time_step = 0;  ///< [s]
+  SkinOptions skin{};
+};
+
+/// Contacts since the last call of `collect_report`, and how many touch now.
+struct ContactReport {
+  Real largest_overlap = 0;         ///< δ/R of the smaller particle [-]
+  Real largest_approach_speed = 0;  ///< [m/s]
+  Vec3 wall_impulse{};              ///< walls to moving particles [N s]
+  Vec3 support_impulse{};           ///< contacts to fixed particles [N s]
+  std::int64_t touching_pairs = 0;
+  std::int64_t touching_walls = 0;
+};
+
+/// Sums over all particles, in an order that does not depend on threads.
+struct ParticleTotals {
+  Real mass = 0;              ///< of moving particles [kg]
+  Vec3 momentum{};            ///< Σ m h, h the half-step velocity whose change is exactly Σ F Δt [kg m/s]
+  Vec3 angular_momentum{};    ///< about the origin, with v*, spin included [kg m²/s]
+  Real kinetic_energy = 0;    ///< translation and spin [J]
+  Real potential_energy = 0;  ///< −Σ m g·x [J]
+  Real mean_height = 0;       ///< mass-weighted z [m]
+  Real largest_speed = 0;     ///< [m/s]
+};
+
+class Engine {
+ public:
+  /// Throws std::invalid_argument where the set-up cannot work.
+  explicit Engine(const EngineSetup& setup);
+
+  /// Replaces all particles; ids are 0, 1, … in the order given.
+  void set_particles(const std::vector<ParticleSeed>& seeds);
+
+  /// Before the substeps of an outer step: removes particles that left through open sides (counted), stops the run if
+  /// one is where it cannot be, and re-sorts memory in space now and then. May reorder the particle arrays.
+  void prepare_outer_step();
+
+  /// Advances all particles by `count` substeps under contacts, gravity and the fluid force, a device functor
+  /// `Vec3 operator()(Index p, const Vec3& velocity, Real dt) const` that is called once a particle and substep.
+  template <class FluidForce>
+  void advance(int count, const FluidForce& fluid_force, core::Timers& timers) {
+    for (int k = 0; k < count; ++k) {
+      begin_substep(timers);
+      {
+        const core::Timers::Scope scope(timers, core::Part::motion);
+        move_particles(particles_, result_, list_, setup_.domain, step_, fluid_force, flags_);
+        Kokkos::fence("dem::engine::moved");
+      }
+      end_substep();
+    }
+  }
+
+  /// Contact figures since the last call; stops the run if an overlap went beyond the limit or a particle broke.
+  ContactReport collect_report();
+
+  /// Puts memory into the canonical order and drops the lists, as resuming does. Called when a checkpoint is written.
+  void canonicalise();
+
+  void save(core::CheckpointWriter& file) const;
+  void load(core::CheckpointReader& file);
+
+  const Particles& particles() const { return particles_; }
+  const EngineSetup& setup() const { return setup_; }
+  ParticleTotals compute_totals() const;
+  std::int64_t left_through_open_sides() const { return left_; }
+  std::int64_t substeps() const { return substeps_; }
+  std::int64_t list_builds() const { return builds_; }
+  /// Entries of the neighbour list now, over particles.
+  Real neighbours_per_particle() const;
+
+ private:
+  void allocate(std::size_t count);
+  void begin_substep(core::Timers& timers);
+  void end_substep();
+  void sort_memory();
+  void remove_left();
+  [[noreturn]] void stop_for_overlap(Real overlap) const;
+
+  EngineSetup setup_;
+  Particles particles_;
+  Particles scratch_;
+  DeviceArray<DevicePlane> planes_;
+  DeviceArray<PairParameters> table_;
+  std::vector<NeighbourSearch> search_;  // none before there are particles
+  NeighbourList list_;
+  ContactResult result_;
+  DeviceArray<std::int32_t> touching_scratch_;
+  MotionStep step_;
+  MotionFlagsView flags_;
+  bool list_valid_ = false;
+  bool one_particle_material_ = true;
+  bool started_ = false;
+  std::int64_t substeps_ = 0;
+  std::int64_t builds_ = 0;
+  std::int64_t left_ = 0;
+  std::int64_t outer_steps_since_sort_ = 0;
+};
+
+}  // namespace pellicle::dem

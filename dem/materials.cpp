@@ -1,0 +1,131 @@
+#include "dem/materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace pellicle::dem {
+namespace {
+
+using std::numbers::pi;
+
+/// Restitution that a damping ratio gives when the force is clipped at zero (PHYSICS.md 3, [c]).
+Real clipped_restitution(Real ratio) {
+  if (ratio < 1) {
+    const Real q = std::sqrt(1 - ratio * ratio);
+    return std::exp(-(ratio / q) * (pi - std::atan2(2 * ratio * q, 1 - 2 * ratio * ratio)));
+  }
+  if (ratio == 1) return std::exp(-2.0);
+  const Real q = std::sqrt(ratio * ratio - 1);
+  return std::exp(-(ratio / q) * std::log((ratio + q) / (ratio - q)));
+}
+
+Real effective_youngs_modulus(const Material& a, const Material& b) {
+  Real compliance = 0;
+  if (!a.rigid) compliance += (1 - a.poisson_ratio * a.poisson_ratio) / a.youngs_modulus;
+  if (!b.rigid) compliance += (1 - b.poisson_ratio * b.poisson_ratio) / b.youngs_modulus;
+  return compliance > 0 ? 1 / compliance : 0;
+}
+
+Real effective_shear_modulus(const Material& a, const Material& b) {
+  Real compliance = 0;
+  if (!a.rigid) compliance += 2 * (2 - a.poisson_ratio) * (1 + a.poisson_ratio) / a.youngs_modulus;
+  if (!b.rigid) compliance += 2 * (2 - b.poisson_ratio) * (1 + b.poisson_ratio) / b.youngs_modulus;
+  return compliance > 0 ? 1 / compliance : 0;
+}
+
+}  // namespace
+
+Real compute_damping_ratio(Real restitution, bool clip) {
+  if (!(restitution > 0) || restitution > 1) {
+    throw std::invalid_argument("restitution must be in (0, 1]");
+  }
+  if (restitution == 1) return 0;
+  if (!clip) {
+    const Real l = std::log(restitution);
+    return -l / std::sqrt(l * l + pi * pi);
+  }
+  // The closed form falls monotonically from 1 at Λ = 0; bisect to the last bit.
+  Real low = 0;
+  Real high = 1;
+  while (clipped_restitution(high) > restitution) high *= 2;
+  for (int step = 0; step < 200; ++step) {
+    const Real middle = 0.5 * (low + high);
+    (clipped_restitution(middle) > restitution ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+std::vector<PairParameters> make_pair_table(const std::vector<Material>& materials,
+                                            const std::vector<PairProperties>& pairs, bool clip) {
+  const auto n = materials.size();
+  std::vector<PairParameters> table(n * n);
+  std::vector<char> given(n * n, 0);
+  for (const auto& pair : pairs) {
+    const auto a = static_cast<std::size_t>(pair.material_a);
+    const auto b = static_cast<std::size_t>(pair.material_b);
+    if (a >= n || b >= n) throw std::invalid_argument("contact pair names a material that does not exist");
+    PairParameters p;
+    p.effective_youngs_modulus = effective_youngs_modulus(materials[a], materials[b]);
+    p.effective_shear_modulus = effective_shear_modulus(materials[a], materials[b]);
+    p.damping_ratio = compute_damping_ratio(pair.restitution, clip);
+    if (p.effective_youngs_modulus > 0) {
+      p.tangential_damping_ratio = 2 * std::sqrt(4 * p.effective_shear_modulus / p.effective_youngs_modulus);
+    }
+    p.sliding_friction = pair.sliding_friction;
+    p.rolling_friction = pair.rolling_friction;
+    table[a * n + b] = table[b * n + a] = p;
+    given[a * n + b] = given[b * n + a] = 1;
+  }
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = a; b < n; ++b) {
+      if (!given[a * n + b] && !(materials[a].rigid && materials[b].rigid)) {
+        throw std::invalid_argument("no contact pair between " + materials[a].name + " and " +
+                                    materials[b].name);
+      }
+    }
+  }
+  return table;
+}
+
+TimeStepBound compute_time_step_bound(const std::vector<Material>& materials,
+                                      const std::vector<Real>& smallest_radius, Real impact_speed) {
+  constexpr Real infinity = std::numeric_limits<Real>::infinity();
+  TimeStepBound result{infinity, infinity, infinity};
+  const auto has_particles = [&](std::size_t m) {
+    return m < smallest_radius.size() && smallest_radius[m] > 0 && smallest_radius[m] < infinity;
+  };
+  for (std::size_t a = 0; a < materials.size(); ++a) {
+    if (!has_particles(a) || materials[a].rigid) continue;
+    const Real radius = smallest_radius[a];
+    const Real nu = materials[a].poisson_ratio;
+    const Real shear_modulus = materials[a].youngs_modulus / (2 * (1 + nu));
+    result.rayleigh_time =
+        std::min(result.rayleigh_time,
+                 pi * radius * std::sqrt(materials[a].density / shear_modulus) / (0.1631 * nu + 0.8766));
+    const Real mass = materials[a].density * 4.0 / 3.0 * pi * radius * radius * radius;
+    for (std::size_t b = 0; b < materials.size(); ++b) {
+      const Real modulus = effective_youngs_modulus(materials[a], materials[b]);
+      // A wall of material b: R* = R, m* = m. Particles of b: the reduced ones.
+      Real reduced_radius = radius;
+      Real reduced_mass = mass;
+      if (has_particles(b)) {
+        const Real other = smallest_radius[b];
+        const Real other_mass = materials[b].density * 4.0 / 3.0 * pi * other * other * other;
+        reduced_radius = radius * other / (radius + other);
+        reduced_mass = mass * other_mass / (mass + other_mass);
+      }
+      // Hertz contact time; PHYSICS.md 3.
+      const Real contact_time =
+          2.87 *
+          std::pow(reduced_mass * reduced_mass / (reduced_radius * modulus * modulus * impact_speed), 0.2);
+      result.contact_time = std::min(result.contact_time, contact_time);
+    }
+  }
+  result.bound = std::min(0.2 * result.rayleigh_time, result.contact_time / 20);
+  return result;
+}
+
+}  // namespace pellicle::dem

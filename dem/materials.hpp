@@ -1,0 +1,61 @@
+// Materials, what holds between two of them, and the options of the contact models.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+#include "core/views.hpp"
+
+namespace pellicle::dem {
+
+/// A solid. A rigid one (a wall whose material the case does not list) has neither modulus nor ratio.
+struct Material {
+  std::string name;
+  Real density = 0;         ///< [kg/m3]
+  Real youngs_modulus = 0;  ///< [Pa]
+  Real poisson_ratio = 0;   ///< [-]
+  bool rigid = false;
+};
+
+/// Contact properties of a pair of materials, by index into the materials; order does not matter.
+struct PairProperties {
+  int material_a = 0;
+  int material_b = 0;
+  Real restitution = 1;       ///< [-], in (0, 1]
+  Real sliding_friction = 0;  ///< [-]
+  Real rolling_friction = 0;  ///< [-], a ratio to the reduced radius R*
+};
+
+/// What the contact laws need of a pair of materials, worked out once.
+struct PairParameters {
+  Real effective_youngs_modulus = 0;  ///< E* [Pa]
+  Real effective_shear_modulus = 0;   ///< G* [Pa]
+  Real damping_ratio = 0;             ///< Λ [-], see compute_damping_ratio
+  Real tangential_damping_ratio = 0;  ///< critical tangential damping over sqrt(S_n m*): 2 sqrt(4 G*/E*) [-]
+  Real sliding_friction = 0;          ///< µ_s [-]
+  Real rolling_friction = 0;          ///< µ_r [-]
+};
+
+/// Λ that makes a Hertz or linear contact with damping 2√(5/6) Λ √(S_n m*) (linear: 2 Λ √(k m*)) rebound with the
+/// given restitution. With `clip` (no attraction at the end of the contact) it inverts PHYSICS.md 3's closed form;
+/// without, it is the textbook Λ = −ln e/√(ln² e + π²). Restitution in (0, 1]; throws std::invalid_argument.
+Real compute_damping_ratio(Real restitution, bool clip);
+
+/// Square table of pair parameters, entry a * materials.size() + b. A pair that is not listed is an error:
+/// std::invalid_argument naming both materials, unless one of them cannot meet the other (two rigid ones).
+std::vector<PairParameters> make_pair_table(const std::vector<Material>& materials,
+                                            const std::vector<PairProperties>& pairs, bool clip);
+
+/// Largest stable particle time step [s]: min(0.2 T_Rayleigh, t_c/20) over all materials and pairs (PHYSICS.md 3).
+struct TimeStepBound {
+  Real bound = 0;          ///< [s]
+  Real rayleigh_time = 0;  ///< shortest, [s]
+  Real contact_time = 0;   ///< shortest, at the impact speed, [s]
+};
+
+/// `smallest_radius` [m] per material (infinite or zero where no particle has it); impact speed [m/s].
+TimeStepBound compute_time_step_bound(const std::vector<Material>& materials,
+                                      const std::vector<Real>& smallest_radius, Real impact_speed);
+
+}  // namespace pellicle::dem

@@ -1,0 +1,93 @@
+// Newton's law for every particle: velocity-Verlet, the contact force once a step.
+#pragma once
+
+#include "dem/contact_loop.hpp"
+#include "dem/neighbour_list.hpp"
+#include "dem/particles.hpp"
+
+namespace pellicle::dem {
+
+/// The fluid force of a case without gas.
+struct NoFluid {
+  KOKKOS_INLINE_FUNCTION Vec3 operator()(Index, const Vec3&, Real) const { return {0, 0, 0}; }
+};
+
+/// What the motion kernel tells the host at once, in memory that both see: no copy within the substeps.
+struct MotionFlags {
+  std::int32_t list_outdated = 0;     ///< somebody has moved beyond its allowance
+  std::int32_t broken_particle = -1;  ///< a particle whose velocity is not a number or beyond all reason
+};
+using MotionFlagsView = Kokkos::View<MotionFlags, Kokkos::SharedHostPinnedSpace>;
+
+/// Constants of a substep.
+struct MotionStep {
+  Vec3 gravity{};      ///< [m/s²]
+  Real time_step = 0;  ///< [s]
+  Real kick =
+      0;  ///< time over which the force acts on the velocity [s]: the time step, half of it at the start
+};
+
+/// Faster than this a particle of this size is broken [m/s].
+inline constexpr Real broken_speed = 1e4;
+
+/// Advances one particle. Between substeps `velocity_spin` holds v*, the velocity at the time of the position,
+/// predicted with the last acceleration: v* = h + a Δt/2, h the velocity half a step earlier. With the new force
+///   h ← h + a Δt,  x ← x + h Δt,  v* ← h + a Δt/2,
+/// which is velocity-Verlet for forces that depend on x, and second order for those that depend on v through v*.
+/// Momentum changes by exactly Σ F Δt, so the stock of a ledger is Σ m h.
+template <class FluidForce>
+struct MotionKernel {
+  Particles particles;
+  ContactResult contacts;
+  NeighbourList list;
+  Domain domain;
+  MotionStep step;
+  FluidForce fluid_force;
+  MotionFlagsView flags;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
+    VelocitySpin motion = particles.velocity_spin(p);
+    PositionRadius place = particles.position_radius(p);
+    // Called for fixed particles too: the gas feels them.
+    const Vec3 fluid = fluid_force(p, motion.velocity(), step.kick);
+    if (motion.inverse_mass == 0) return;
+    const Real half = 0.5 * step.time_step;
+    const Vec3 acceleration = motion.inverse_mass * (contacts.force(p) + fluid) + step.gravity;
+    const Real inverse_inertia = 2.5 * motion.inverse_mass / (place.radius * place.radius);
+    const Vec3 angular_acceleration = inverse_inertia * contacts.torque(p);
+    const Vec3 velocity = motion.velocity() - half * particles.acceleration(p) + step.kick * acceleration;
+    const Vec3 spin =
+        motion.spin() - half * particles.angular_acceleration(p) + step.kick * angular_acceleration;
+    place.x += step.time_step * velocity.x;
+    place.y += step.time_step * velocity.y;
+    place.z += step.time_step * velocity.z;
+    motion.vx = velocity.x + half * acceleration.x;
+    motion.vy = velocity.y + half * acceleration.y;
+    motion.vz = velocity.z + half * acceleration.z;
+    motion.wx = spin.x + half * angular_acceleration.x;
+    motion.wy = spin.y + half * angular_acceleration.y;
+    motion.wz = spin.z + half * angular_acceleration.z;
+    particles.position_radius(p) = place;
+    particles.velocity_spin(p) = motion;
+    particles.acceleration(p) = acceleration;
+    particles.angular_acceleration(p) = angular_acceleration;
+    const Vec3 moved = place.position() - list.built_at(p);
+    // Negated comparisons, so that NaN counts as outdated and as broken.
+    if (!(norm_squared(moved) <= list.allowance_squared(p))) {
+      flags().list_outdated = 1;  // every writer writes the same
+      if (!(norm_squared(velocity) < broken_speed * broken_speed))
+        Kokkos::atomic_max(&flags().broken_particle, p);
+    }
+  }
+};
+
+/// One substep of all particles under contacts, gravity and the fluid force.
+template <class FluidForce>
+void move_particles(const Particles& particles, const ContactResult& contacts, const NeighbourList& list,
+                    const Domain& domain, const MotionStep& step, const FluidForce& fluid_force,
+                    const MotionFlagsView& flags) {
+  Kokkos::parallel_for("dem::motion::move_particles", DeviceRange(0, particles.count),
+                       MotionKernel<FluidForce>{particles, contacts, list, domain, step, fluid_force, flags});
+}
+
+}  // namespace pellicle::dem

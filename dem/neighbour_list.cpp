@@ -1,0 +1,283 @@
+#include "dem/neighbour_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace pellicle::dem {
+namespace {
+
+/// Arrays that only ever grow; contents are not kept.
+template <class T>
+void ensure_size(DeviceArray<T>& array, std::size_t size, const char* label) {
+  if (array.extent(0) < size) {
+    array = DeviceArray<T>(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
+                           size + size / 4 + 16);
+  }
+}
+
+struct CellGrid {
+  Domain domain;
+  Index3 cells;
+  Vec3 inverse_cell_size;
+
+  KOKKOS_INLINE_FUNCTION Index coordinate(int axis, Real x) const {
+    const auto i = static_cast<Index>(Kokkos::floor((x - domain.box.min[axis]) * inverse_cell_size[axis]));
+    return i < 0 ? 0 : (i >= cells[axis] ? cells[axis] - 1 : i);
+  }
+  KOKKOS_INLINE_FUNCTION Index cell(const PositionRadius& p) const {
+    return coordinate(0, p.x) + cells.x * (coordinate(1, p.y) + cells.y * coordinate(2, p.z));
+  }
+};
+
+void count_per_cell(const CellGrid& grid, const Particles& particles,
+                    const DeviceArray<std::int32_t>& cell_of, const DeviceArray<std::int32_t>& cell_fill) {
+  const auto place = particles.position_radius;
+  Kokkos::parallel_for(
+      "dem::neighbour_list::count_per_cell", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index p) {
+        const Index cell = grid.cell(place(p));
+        cell_of(p) = cell;
+        // Integer counts do not depend on the order of the additions.
+        Kokkos::atomic_inc(&cell_fill(cell));
+      });
+}
+
+/// Exclusive prefix sum of count(0 … n), total in the last entry of offset.
+void offsets_from_counts(const DeviceArray<std::int32_t>& count, const DeviceArray<std::int32_t>& offset,
+                         Index n, const char* label) {
+  Kokkos::parallel_scan(
+      label, DeviceRange(0, n + 1), KOKKOS_LAMBDA(const Index i, std::int32_t& sum, const bool final) {
+        if (final) offset(i) = sum;
+        if (i < n) sum += count(i);
+      });
+}
+
+void scatter_to_cells(const Particles& particles, const DeviceArray<std::int32_t>& cell_of,
+                      const DeviceArray<std::int32_t>& cell_start, const DeviceArray<std::int32_t>& cell_fill,
+                      const DeviceArray<std::int32_t>& order) {
+  Kokkos::parallel_for(
+      "dem::neighbour_list::scatter_to_cells", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index p) {
+        const Index cell = cell_of(p);
+        const std::int32_t place = cell_start(cell) + Kokkos::atomic_fetch_add(&cell_fill(cell), 1);
+        order(place) = p;
+      });
+}
+
+/// The scatter leaves each cell in the order threads came by; sorting by id makes it the same every time.
+void sort_cells_by_id(const Particles& particles, Index cells, const DeviceArray<std::int32_t>& cell_start,
+                      const DeviceArray<std::int32_t>& order) {
+  const auto motion = particles.velocity_spin;
+  Kokkos::parallel_for(
+      "dem::neighbour_list::sort_cells_by_id", DeviceRange(0, cells), KOKKOS_LAMBDA(const Index cell) {
+        for (std::int32_t a = cell_start(cell) + 1; a < cell_start(cell + 1); ++a) {
+          const std::int32_t particle = order(a);
+          const std::int32_t id = motion(particle).id;
+          std::int32_t b = a;
+          for (; b > cell_start(cell) && motion(order(b - 1)).id > id; --b) order(b) = order(b - 1);
+          order(b) = particle;
+        }
+      });
+}
+
+struct AllowanceRule {
+  Real reach_time;  ///< steps × time step [s]
+  Real smallest, largest;
+
+  KOKKOS_INLINE_FUNCTION Real operator()(const VelocitySpin& m) const {
+    const Real travel = reach_time * Kokkos::sqrt(m.vx * m.vx + m.vy * m.vy + m.vz * m.vz);
+    const Real allowance = travel > smallest ? travel : smallest;
+    return allowance < largest ? allowance : largest;
+  }
+};
+
+void gather_sorted(const Particles& particles, const AllowanceRule& rule,
+                   const DeviceArray<std::int32_t>& order, const DeviceArray<PositionRadius>& sorted,
+                   const NeighbourList& list) {
+  const auto place = particles.position_radius;
+  const auto motion = particles.velocity_spin;
+  const auto built_at = list.built_at;
+  const auto allowance_squared = list.allowance_squared;
+  Kokkos::parallel_for(
+      "dem::neighbour_list::gather_sorted", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index slot) {
+        const Index p = order(slot);
+        PositionRadius entry = place(p);
+        const Real allowance = rule(motion(p));
+        built_at(p) = entry.position();
+        allowance_squared(p) = allowance * allowance;
+        entry.radius += allowance;
+        sorted(slot) = entry;
+      });
+}
+
+/// Visits every sorted slot whose particle's reach meets that of the particle in `slot`, in canonical order.
+template <class Visit>
+KOKKOS_INLINE_FUNCTION void visit_in_reach(const CellGrid& grid, const DeviceArray<std::int32_t>& cell_start,
+                                           const DeviceArray<PositionRadius>& sorted, Index slot,
+                                           const Visit& visit) {
+  const PositionRadius self = sorted(slot);
+  const Index3 n = grid.cells;
+  const Domain& domain = grid.domain;
+  const Index ci = grid.coordinate(0, self.x);
+  const Index cj = grid.coordinate(1, self.y);
+  const Index ck = grid.coordinate(2, self.z);
+  const bool repeats = domain.periodic.x + domain.periodic.y + domain.periodic.z != 0;
+  // Along a periodic axis of fewer than three cells the neighbours on both sides are the same cell: visit it once.
+  const auto first = [](Index c, Index cells, Index periodic) {
+    return periodic != 0 ? (cells >= 3 ? c - 1 : Index{0}) : (c > 0 ? c - 1 : c);
+  };
+  const auto last = [](Index c, Index cells, Index periodic) {
+    return periodic != 0 ? (cells >= 3 ? c + 1 : cells - 1) : (c < cells - 1 ? c + 1 : c);
+  };
+  const auto wrapped = [](Index c, Index cells) { return c < 0 ? c + cells : (c >= cells ? c - cells : c); };
+  const auto scan = [&](std::int32_t begin, std::int32_t end) {
+    for (std::int32_t other = begin; other < end; ++other) {
+      const PositionRadius b = sorted(other);
+      Vec3 d{b.x - self.x, b.y - self.y, b.z - self.z};
+      if (repeats) d = domain.shortest(d);
+      const Real reach = self.radius + b.radius;
+      if (norm_squared(d) < reach * reach && other != slot) visit(other);
+    }
+  };
+  for (Index k = first(ck, n.z, domain.periodic.z); k <= last(ck, n.z, domain.periodic.z); ++k) {
+    for (Index j = first(cj, n.y, domain.periodic.y); j <= last(cj, n.y, domain.periodic.y); ++j) {
+      const Index row = n.x * (wrapped(j, n.y) + n.y * wrapped(k, n.z));
+      if (domain.periodic.x == 0) {
+        // Cells of a row lie side by side in the sorted order: one run instead of three.
+        scan(cell_start(row + first(ci, n.x, 0)), cell_start(row + last(ci, n.x, 0) + 1));
+      } else {
+        for (Index i = first(ci, n.x, 1); i <= last(ci, n.x, 1); ++i) {
+          const Index cell = row + wrapped(i, n.x);
+          scan(cell_start(cell), cell_start(cell + 1));
+        }
+      }
+    }
+  }
+}
+
+void count_pairs(const CellGrid& grid, Index count, const DeviceArray<std::int32_t>& cell_start,
+                 const DeviceArray<std::int32_t>& order, const DeviceArray<PositionRadius>& sorted,
+                 const DeviceArray<DevicePlane>& walls, const DeviceArray<std::int32_t>& pair_count,
+                 const DeviceArray<std::int32_t>& wall_count) {
+  const auto wall_total = static_cast<Index>(walls.extent(0));
+  Kokkos::parallel_for(
+      "dem::neighbour_list::count_pairs", DeviceRange(0, count), KOKKOS_LAMBDA(const Index slot) {
+        const Index p = order(slot);
+        std::int32_t pairs = 0;
+        visit_in_reach(grid, cell_start, sorted, slot, [&pairs](std::int32_t) { ++pairs; });
+        pair_count(p) = pairs;
+        std::int32_t near = 0;
+        const PositionRadius self = sorted(slot);
+        for (Index w = 0; w < wall_total; ++w)
+          near += walls(w).distance(self.position()) < self.radius ? 1 : 0;
+        wall_count(p) = near;
+      });
+}
+
+void fill_pairs(const CellGrid& grid, Index count, const DeviceArray<std::int32_t>& cell_start,
+                const DeviceArray<std::int32_t>& order, const DeviceArray<PositionRadius>& sorted,
+                const DeviceArray<DevicePlane>& walls, const NeighbourList& list) {
+  const auto wall_total = static_cast<Index>(walls.extent(0));
+  const auto offset = list.offset;
+  const auto partner = list.partner;
+  const auto wall_offset = list.wall_offset;
+  const auto wall = list.wall;
+  Kokkos::parallel_for(
+      "dem::neighbour_list::fill_pairs", DeviceRange(0, count), KOKKOS_LAMBDA(const Index slot) {
+        const Index p = order(slot);
+        std::int32_t entry = offset(p);
+        visit_in_reach(grid, cell_start, sorted, slot,
+                       [&entry, &partner, &order](std::int32_t other) { partner(entry++) = order(other); });
+        std::int32_t wall_entry = wall_offset(p);
+        const PositionRadius self = sorted(slot);
+        for (Index w = 0; w < wall_total; ++w) {
+          if (walls(w).distance(self.position()) < self.radius) wall(wall_entry++) = w;
+        }
+      });
+}
+
+/// The last entry of an offsets array: the total.
+std::size_t read_total(const DeviceArray<std::int32_t>& offset, Index n) {
+  std::int32_t total = 0;
+  Kokkos::deep_copy(total, Kokkos::subview(offset, n));
+  return static_cast<std::size_t>(total);
+}
+
+}  // namespace
+
+NeighbourSearch::NeighbourSearch(const Domain& domain, const SkinOptions& skin, Real smallest_radius,
+                                 Real largest_radius)
+    : domain_(domain), skin_(skin), smallest_radius_(smallest_radius), largest_radius_(largest_radius) {
+  const Real reach = 2 * largest_radius_ * (1 + skin_.largest_fraction);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Real length = domain_.length()[axis];
+    if (domain_.periodic[axis] != 0 && length < 2 * reach) {
+      throw std::invalid_argument("a periodic domain must be at least " + std::to_string(2 * reach) +
+                                  " m wide for these particles, so that none meets two images of another");
+    }
+    cells_[axis] = std::clamp(static_cast<Index>(std::min(length / reach, 2000.0)), Index{1}, Index{2000});
+    inverse_cell_size_[axis] = static_cast<Real>(cells_[axis]) / length;
+  }
+}
+
+void NeighbourSearch::bin(const Particles& particles) {
+  const auto cells = static_cast<std::size_t>(cells_.x) * static_cast<std::size_t>(cells_.y) *
+                     static_cast<std::size_t>(cells_.z);
+  const auto n = static_cast<std::size_t>(particles.count);
+  ensure_size(cell_of_, n, "dem::neighbour_list::cell_of");
+  ensure_size(order_, n, "dem::neighbour_list::order");
+  ensure_size(sorted_, n, "dem::neighbour_list::sorted");
+  ensure_size(pair_count_, n, "dem::neighbour_list::pair_count");
+  ensure_size(wall_count_, n, "dem::neighbour_list::wall_count");
+  ensure_size(cell_start_, cells + 1, "dem::neighbour_list::cell_start");
+  ensure_size(cell_fill_, cells, "dem::neighbour_list::cell_fill");
+  const CellGrid grid{domain_, cells_, inverse_cell_size_};
+  Kokkos::deep_copy(cell_fill_, 0);
+  count_per_cell(grid, particles, cell_of_, cell_fill_);
+  offsets_from_counts(cell_fill_, cell_start_, static_cast<Index>(cells),
+                      "dem::neighbour_list::cell_offsets");
+  Kokkos::deep_copy(cell_fill_, 0);
+  scatter_to_cells(particles, cell_of_, cell_start_, cell_fill_, order_);
+  sort_cells_by_id(particles, static_cast<Index>(cells), cell_start_, order_);
+}
+
+void NeighbourSearch::build(const Particles& particles, const DeviceArray<DevicePlane>& walls, Real time_step,
+                            NeighbourList& list) {
+  const auto n = static_cast<std::size_t>(particles.count);
+  wrap_periodic(domain_, particles);
+  bin(particles);
+  list.count = particles.count;
+  ensure_size(list.offset, n + 1, "dem::neighbour_list::offset");
+  ensure_size(list.wall_offset, n + 1, "dem::neighbour_list::wall_offset");
+  ensure_size(list.built_at, n, "dem::neighbour_list::built_at");
+  ensure_size(list.allowance_squared, n, "dem::neighbour_list::allowance_squared");
+  const CellGrid grid{domain_, cells_, inverse_cell_size_};
+  const AllowanceRule rule{skin_.steps * time_step, skin_.smallest_fraction * smallest_radius_,
+                           skin_.largest_fraction * largest_radius_};
+  gather_sorted(particles, rule, order_, sorted_, list);
+  count_pairs(grid, particles.count, cell_start_, order_, sorted_, walls, pair_count_, wall_count_);
+  offsets_from_counts(pair_count_, list.offset, particles.count, "dem::neighbour_list::pair_offsets");
+  offsets_from_counts(wall_count_, list.wall_offset, particles.count, "dem::neighbour_list::wall_offsets");
+  ensure_size(list.partner, read_total(list.offset, particles.count), "dem::neighbour_list::partner");
+  ensure_size(list.wall, read_total(list.wall_offset, particles.count), "dem::neighbour_list::wall");
+  fill_pairs(grid, particles.count, cell_start_, order_, sorted_, walls, list);
+}
+
+void wrap_periodic(const Domain& domain, const Particles& particles) {
+  if (domain.periodic.x + domain.periodic.y + domain.periodic.z == 0) return;
+  const auto place = particles.position_radius;
+  Kokkos::parallel_for(
+      "dem::neighbour_list::wrap_periodic", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index p) {
+        Vec3 x = place(p).position();
+        const Vec3 length = domain.length();
+        for (int axis = 0; axis < 3; ++axis) {
+          if (domain.periodic[axis] == 0) continue;
+          if (x[axis] < domain.box.min[axis]) x[axis] += length[axis];
+          if (x[axis] >= domain.box.max[axis]) x[axis] -= length[axis];
+        }
+        place(p).x = x.x;
+        place(p).y = x.y;
+        place(p).z = x.z;
+      });
+}
+
+}  // namespace pellicle::dem
