@@ -87,7 +87,7 @@ Index rank_staying(const Domain& domain, const Particles& particles, const Devic
 }
 
 struct BlockTotals {
-  Real mass, kinetic_energy, potential_energy, moment, largest_speed;
+  Real mass, volume, kinetic_energy, potential_energy, moment, largest_speed;
   Vec3 momentum, angular_momentum;
 };
 
@@ -106,6 +106,7 @@ void sum_blocks(const Particles& particles, const Vec3& gravity, Real half_step,
           const Real inertia = 0.4 * mass * place.radius * place.radius;
           const Vec3 v = motion.velocity();
           t.mass += mass;
+          t.volume += 4.0 / 3.0 * Kokkos::numbers::pi * place.radius * place.radius * place.radius;
           t.moment += mass * place.z;
           t.kinetic_energy += 0.5 * mass * norm_squared(v) + 0.5 * inertia * norm_squared(motion.spin());
           t.potential_energy -= mass * dot(gravity, place.position());
@@ -166,13 +167,11 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   search_.clear();
   started_ = false;
   left_ = 0;
+  left_momentum_ = gravity_impulse_ = Vec3{};
   if (seeds.empty()) return;
   const auto place = Kokkos::create_mirror_view(particles_.position_radius);
   const auto motion = Kokkos::create_mirror_view(particles_.velocity_spin);
   const auto mass = Kokkos::create_mirror_view(particles_.mass);
-  Real smallest = seeds.front().radius;
-  Real largest = smallest;
-  one_particle_material_ = true;
   for (std::size_t p = 0; p < seeds.size(); ++p) {
     const ParticleSeed& s = seeds[p];
     const Real density = setup_.materials.at(static_cast<std::size_t>(s.material)).density;
@@ -187,14 +186,14 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
                  s.fixed ? 0 : 1 / mass(p),
                  s.material,
                  static_cast<std::int32_t>(p)};
-    smallest = std::min(smallest, s.radius);
-    largest = std::max(largest, s.radius);
-    one_particle_material_ = one_particle_material_ && s.material == 0;
   }
   Kokkos::deep_copy(particles_.position_radius, place);
   Kokkos::deep_copy(particles_.velocity_spin, motion);
   Kokkos::deep_copy(particles_.mass, mass);
-  search_.emplace_back(setup_.domain, setup_.skin, smallest, largest);
+  one_particle_material_ =
+      std::all_of(seeds.begin(), seeds.end(), [](const ParticleSeed& s) { return s.material == 0; });
+  take_stock();
+  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
   canonicalise();
 }
 
@@ -221,6 +220,8 @@ void Engine::end_substep() {
   std::swap(result_.touching, result_.touching_new);
   started_ = true;
   ++substeps_;
+  gravity_impulse_ += step_.kick * moving_mass_ * setup_.gravity;
+  volume_time_ += step_.kick * moving_volume_;
   if (flags_().list_outdated != 0) {
     list_valid_ = false;
     flags_().list_outdated = 0;
@@ -258,11 +259,16 @@ void Engine::remove_left() {
       make_array<std::int32_t>("dem::engine::staying_order", static_cast<std::size_t>(staying));
   Kokkos::deep_copy(order, Kokkos::subview(touching_scratch_, std::pair<Index, Index>(0, staying)));
   left_ += particles_.count - staying;
+  const Vec3 momentum = compute_totals().momentum;
   scratch_.count = staying;
   permute(particles_, result_.touching, order, scratch_, touching_scratch_);
   std::swap(particles_, scratch_);
   std::swap(result_.touching, touching_scratch_);
   list_valid_ = false;
+  const ParticleTotals rest = compute_totals();
+  left_momentum_ += momentum - rest.momentum;
+  moving_mass_ = rest.mass;
+  moving_volume_ = rest.volume;
 }
 
 void Engine::prepare_outer_step() {
@@ -320,6 +326,7 @@ ParticleTotals Engine::compute_totals() const {
   Real moment = 0;
   for (std::size_t b = 0; b < host.extent(0); ++b) {
     totals.mass += host(b).mass;
+    totals.volume += host(b).volume;
     totals.kinetic_energy += host(b).kinetic_energy;
     totals.potential_energy += host(b).potential_energy;
     totals.momentum += host(b).momentum;
@@ -356,14 +363,34 @@ void read_array(const core::CheckpointReader& file, const char* name, const Devi
 
 }  // namespace
 
+void Engine::take_stock() {
+  const auto place = host_copy(particles_.position_radius, particles_.count);
+  smallest_radius_ = largest_radius_ = place(0).radius;
+  for (std::size_t p = 0; p < place.extent(0); ++p) {
+    smallest_radius_ = std::min(smallest_radius_, place(p).radius);
+    largest_radius_ = std::max(largest_radius_, place(p).radius);
+  }
+  const ParticleTotals totals = compute_totals();
+  moving_mass_ = totals.mass;
+  moving_volume_ = totals.volume;
+}
+
 void Engine::save(core::CheckpointWriter& file) const {
   const Index n = particles_.count;
   file.write("dem/count", std::int64_t{n});
   file.write("dem/substeps", substeps_);
   file.write("dem/list_builds", builds_);
   file.write("dem/left", left_);
+  file.write("dem/left_momentum", left_momentum_);
+  file.write("dem/gravity_impulse", gravity_impulse_);
   file.write("dem/started", std::int64_t{started_ ? 1 : 0});
   if (n == 0) return;
+  file.write("dem/smallest_radius", smallest_radius_);
+  file.write("dem/largest_radius", largest_radius_);
+  file.write("dem/moving_mass", moving_mass_);
+  file.write("dem/moving_volume", moving_volume_);
+  file.write("dem/volume_time", volume_time_);
+  file.write("dem/one_particle_material", std::int64_t{one_particle_material_ ? 1 : 0});
   file.write("dem/position_radius", host_copy(particles_.position_radius, n));
   file.write("dem/velocity_spin", host_copy(particles_.velocity_spin, n));
   file.write("dem/mass", host_copy(particles_.mass, n));
@@ -378,6 +405,8 @@ void Engine::load(core::CheckpointReader& file) {
   substeps_ = file.read_int64("dem/substeps");
   builds_ = file.read_int64("dem/list_builds");
   left_ = file.read_int64("dem/left");
+  left_momentum_ = file.read_vec3("dem/left_momentum");
+  gravity_impulse_ = file.read_vec3("dem/gravity_impulse");
   started_ = file.read_int64("dem/started") != 0;
   search_.clear();
   if (n == 0) return;
@@ -387,17 +416,13 @@ void Engine::load(core::CheckpointReader& file) {
   read_array(file, "dem/acceleration", particles_.acceleration);
   read_array(file, "dem/angular_acceleration", particles_.angular_acceleration);
   read_array(file, "dem/touching", result_.touching);
-  const auto place = host_copy(particles_.position_radius, particles_.count);
-  const auto motion = host_copy(particles_.velocity_spin, particles_.count);
-  Real smallest = place(0).radius;
-  Real largest = smallest;
-  one_particle_material_ = true;
-  for (std::size_t p = 0; p < place.extent(0); ++p) {
-    smallest = std::min(smallest, place(p).radius);
-    largest = std::max(largest, place(p).radius);
-    one_particle_material_ = one_particle_material_ && motion(p).material == 0;
-  }
-  search_.emplace_back(setup_.domain, setup_.skin, smallest, largest);
+  smallest_radius_ = file.read_double("dem/smallest_radius");
+  largest_radius_ = file.read_double("dem/largest_radius");
+  moving_mass_ = file.read_double("dem/moving_mass");
+  moving_volume_ = file.read_double("dem/moving_volume");
+  volume_time_ = file.read_double("dem/volume_time");
+  one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
+  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
   canonicalise();
 }
 

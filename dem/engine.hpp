@@ -100,6 +100,12 @@ class Engine {
   const EngineSetup& setup() const { return setup_; }
   ParticleTotals compute_totals() const;
   std::int64_t left_through_open_sides() const { return left_; }
+  /// Momentum that particles took out through open sides so far [kg m/s].
+  const Vec3& left_momentum() const { return left_momentum_; }
+  /// Impulse of gravity on the moving particles so far [N s].
+  const Vec3& gravity_impulse() const { return gravity_impulse_; }
+  /// Volume of the moving particles, integrated over the time that forces acted on them [m³ s].
+  Real volume_time() const { return volume_time_; }
   std::int64_t substeps() const { return substeps_; }
   std::int64_t list_builds() const { return builds_; }
   /// Entries of the neighbour list now, over particles.
@@ -111,6 +117,7 @@ class Engine {
   void end_substep();
   void sort_memory();
   void remove_left();
+  void take_stock();
   [[noreturn]] void stop_for_overlap(Real overlap) const;
 
   EngineSetup setup_;
@@ -130,6 +137,11 @@ class Engine {
   std::int64_t substeps_ = 0;
   std::int64_t builds_ = 0;
   std::int64_t left_ = 0;
+  Vec3 left_momentum_{};
+  Vec3 gravity_impulse_{};
+  Real volume_time_ = 0;
+  Real moving_mass_ = 0, moving_volume_ = 0;       // [kg], [m³], of the particles present
+  Real smallest_radius_ = 0, largest_radius_ = 0;  // [m], of those at the start: they shape the cell grid
   std::int64_t outer_steps_since_sort_ = 0;
 };
 
