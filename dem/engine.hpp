@@ -51,7 +51,8 @@ struct ContactReport {
 
 /// Sums over all particles, in an order that does not depend on threads.
 struct ParticleTotals {
-  Real mass = 0;              ///< of moving particles [kg]
+  Real mass = 0;              ///< of moving particles, as all sums here [kg]
+  Real volume = 0;            ///< [m³]
   Vec3 momentum{};            ///< Σ m h, h the half-step velocity whose change is exactly Σ F Δt [kg m/s]
   Vec3 angular_momentum{};    ///< about the origin, with v*, spin included [kg m²/s]
   Real kinetic_energy = 0;    ///< translation and spin [J]
