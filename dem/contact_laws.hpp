@@ -7,9 +7,18 @@
 #include "core/model_list.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
-#include "dem/materials.hpp"
 
 namespace pellicle::dem {
+
+/// What the contact laws need of a pair of materials, worked out once.
+struct PairParameters {
+  Real effective_youngs_modulus = 0;  ///< E* [Pa]
+  Real effective_shear_modulus = 0;   ///< G* [Pa]
+  Real damping_ratio = 0;             ///< Λ [-], see compute_damping_ratio
+  Real tangential_damping_ratio = 0;  ///< critical tangential damping over sqrt(S_n m*): 2 sqrt(4 G*/E*) [-]
+  Real sliding_friction = 0;          ///< µ_s [-]
+  Real rolling_friction = 0;          ///< µ_r [-]
+};
 
 /// One contact as the laws see it. A wall has infinite radius and mass: R* = R, m* = m.
 struct ContactState {

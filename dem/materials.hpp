@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/types.hpp"
-#include "core/views.hpp"
+#include "dem/contact_laws.hpp"
 
 namespace pellicle::dem {
 
@@ -25,16 +25,6 @@ struct PairProperties {
   Real restitution = 1;       ///< [-], in (0, 1]
   Real sliding_friction = 0;  ///< [-]
   Real rolling_friction = 0;  ///< [-], a ratio to the reduced radius R*
-};
-
-/// What the contact laws need of a pair of materials, worked out once.
-struct PairParameters {
-  Real effective_youngs_modulus = 0;  ///< E* [Pa]
-  Real effective_shear_modulus = 0;   ///< G* [Pa]
-  Real damping_ratio = 0;             ///< Λ [-], see compute_damping_ratio
-  Real tangential_damping_ratio = 0;  ///< critical tangential damping over sqrt(S_n m*): 2 sqrt(4 G*/E*) [-]
-  Real sliding_friction = 0;          ///< µ_s [-]
-  Real rolling_friction = 0;          ///< µ_r [-]
 };
 
 /// Λ that makes a Hertz or linear contact with damping 2√(5/6) Λ √(S_n m*) (linear: 2 Λ √(k m*)) rebound with the
