@@ -7,4 +7,28 @@ std::string CaseSpec::where(const std::string& path) const {
   return (found != lines.end() ? found->second : file) + ": " + path;
 }
 
+CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {
+  std::array<std::vector<Real>, 3> faces;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    if (!grid.faces[a].empty()) {
+      faces[a] = grid.faces[a];
+      continue;
+    }
+    const Real low = domain.box.min[axis];
+    const Real length = domain.box.max[axis] - low;
+    const auto cells = static_cast<std::size_t>(grid.cells[axis]);
+    // Sizes 1, g, g2, ... scaled to the length; sums, so that neighbouring faces are in order.
+    std::vector<Real> sums{0};
+    Real size = 1;
+    for (std::size_t i = 0; i < cells; ++i) {
+      sums.push_back(sums.back() + size);
+      size *= grid.growth[axis];
+    }
+    for (const Real sum : sums) faces[a].push_back(low + length * sum / sums.back());
+    faces[a].back() = domain.box.max[axis];
+  }
+  return CartesianGrid(faces, domain.periodic);
+}
+
 }  // namespace pellicle::tools

@@ -9,14 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "cfd/boundary.hpp"
+#include "cfd/gas_options.hpp"
 #include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
 
 namespace pellicle::tools {
-
-/// Sides of the domain; in the case file left, right, front, back, bottom, top.
-enum class Side { x_min, x_max, y_min, y_max, z_min, z_max };
 
 struct DomainSpec {
   Box box;  ///< [m]
@@ -109,67 +108,35 @@ struct PlaneSpec {
 struct WallSpec {
   std::string where;
   std::string name;
-  bool box = false;        ///< the six sides of the domain; else a plane
-  std::vector<Side> open;  ///< sides of the box that are left out: particles leave there
+  bool box = false;             ///< the six sides of the domain; else a plane
+  std::vector<cfd::Side> open;  ///< sides of the box that are left out: particles leave there
   std::optional<PlaneSpec> plane;
   int material = 0;  ///< index into CaseSpec::materials
   Vec3 velocity;     ///< of the surface; the wall stays in place, like a belt [m/s]
 };
 
+/// A grid over the whole domain; see make_grid.
 struct GridSpec {
   Index3 cells{0, 0, 0};
-  std::array<std::vector<Real>, 3> faces;  ///< face coordinates, cells + 1 a side [m]; always filled in
-};
-
-struct InletSpec {
-  std::optional<Real> velocity;   ///< superficial, inward [m/s]; exactly one of the two is set
-  std::optional<Real> flow_rate;  ///< [m3/s]
-};
-struct OutletSpec {
-  Real pressure = 0;  ///< [Pa]
-};
-struct NoSlipSpec {
-  Vec3 velocity;  ///< [m/s]
-};
-
-struct BoundarySpec {
-  std::string where;
-  std::string name;
-  Side on = Side::z_min;
-  std::optional<Box> region;       ///< unset: the rest of that side
-  std::optional<InletSpec> inlet;  ///< exactly one of these five is set
-  std::optional<OutletSpec> outlet;
-  std::optional<NoSlipSpec> wall;
-  bool free_slip = false;
-  bool symmetry = false;
-};
-
-struct GasSolverSpec {
-  Real pressure_tolerance = 1e-8;  ///< relative, of the last pressure solve of a step
-  Real momentum_tolerance = 1e-8;  ///< relative
-  Real outer_tolerance = 1e-6;     ///< relative change that ends the outer iterations
-  int max_outer_iterations = 20;
-  int max_linear_iterations = 500;
+  Vec3 growth{1, 1, 1};  ///< per axis, size of a cell over that of the one before it, from min to max
+  /// Face coordinates per axis, cells + 1 each [m]; empty along axes where cells and growth say it all.
+  std::array<std::vector<Real>, 3> faces;
 };
 
 struct GasSpec {
-  Real density = 0;    ///< [kg/m3]
-  Real viscosity = 0;  ///< dynamic [Pa s]
-  Vec3 velocity;       ///< initial [m/s]
-  Vec3 body_force;     ///< on the gas, per volume, besides gravity [N/m3]
+  cfd::GasOptions options;  ///< gravity is that of the case
+  Vec3 velocity;            ///< initial [m/s]
   GridSpec grid;
-  std::string convection = "ultimate_quickest";
-  std::vector<BoundarySpec> boundaries;  ///< a side (or the rest of one) that none names is a no-slip wall
-  GasSolverSpec solver;
+  std::vector<cfd::BoundaryPatch> boundaries;  ///< what none of them takes is a no-slip wall
 };
 
 enum class Coefficients { gas_step, substep };
 enum class Exchange { implicit, explicit_, one_way };
 
 struct CouplingSpec {
-  std::string drag = "beetstra";
-  std::string deposition = "divided";
-  GridSpec transfer_grid;  ///< default: the gas grid
+  std::string drag = "beetstra";       ///< a name in the list of coupling::DragLaw
+  std::string deposition = "divided";  ///< a name in the list of coupling::Deposition
+  GridSpec transfer_grid;              ///< default: the gas grid
   Exchange exchange = Exchange::implicit;
   bool pressure_gradient_force = true;
   Coefficients coefficients = Coefficients::gas_step;
@@ -250,5 +217,8 @@ struct CaseSpec {
   /// `file:line: key.path` of a key such as `time.gas_step`, for messages; without a line if it was not given.
   std::string where(const std::string& path) const;
 };
+
+/// The grid that a specification describes, over the domain and periodic where the domain is.
+CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain);
 
 }  // namespace pellicle::tools

@@ -1,0 +1,34 @@
+// The keys of a case file, each declared once: name, unit, range, default, what it means.
+#pragma once
+
+#include "core/keys.hpp"
+#include "tools/pellicle/case_spec.hpp"
+
+namespace pellicle::tools {
+
+/// Visits every key of a case file, in the order in which the resolved file and the docs show them. After reading,
+/// defaults that follow from other keys are still to be filled in (see fill_in_defaults).
+void describe_case(core::Keys& keys, CaseSpec& spec);
+
+// Its parts, one a file.
+void describe_materials_and_walls(core::Keys& keys, CaseSpec& spec);
+void describe_contacts(core::Keys& keys, CaseSpec& spec);
+void describe_particles(core::Keys& keys, CaseSpec& spec);
+void describe_gas(core::Keys& keys, CaseSpec& spec);
+void describe_coupling(core::Keys& keys, CaseSpec& spec);
+void describe_output(core::Keys& keys, CaseSpec& spec);
+
+// Pieces that several parts use.
+
+/// Two opposite corners, with `max` beyond `min` in every direction.
+void describe_box(core::Keys& keys, Box& box);
+/// A number for which 0 stands for "not given".
+void real_or_unset(core::Keys& keys, const core::Key& key, const core::RealRule& rule, Real& value);
+/// The name of a material for its index; one that is not known becomes a rigid one or is refused.
+void material_key(core::Keys& keys, const core::Key& key, CaseSpec& spec, int& material, bool may_be_new);
+/// Index of a material, or -1.
+int find_material(const CaseSpec& spec, std::string_view name);
+/// Names of the materials, `a, b`; of those with properties only, or of all.
+std::string material_names(const CaseSpec& spec, bool with_rigid);
+
+}  // namespace pellicle::tools

@@ -1,0 +1,244 @@
+// Keys of the gas and of what couples it to the particles.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/pellicle/case_keys.hpp"
+#include "tools/pellicle/model_families.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+using core::Keys;
+using core::Need;
+using core::Size;
+using core::TextRule;
+namespace dimension = core::dimension;
+namespace range = core::range;
+
+constexpr core::ModelInfo pressure_solver_list[] = {
+    {"multigrid", "conjugate gradients with a geometric multigrid cycle"},
+    {"amgcl", "conjugate gradients with the algebraic multigrid of AMGCL"}};
+
+constexpr core::WholeRule cells_rule{1, 100'000};
+
+void describe_faces(Keys& keys, std::array<std::vector<Real>, 3>& faces, const DomainSpec& domain) {
+  static constexpr std::string_view names[] = {"x", "y", "z"};
+  for (std::size_t a = 0; a < 3; ++a) {
+    keys.reals(
+        {names[a], "coordinates of the cell faces, from one side of the domain to the other", Need::required},
+        {dimension::length}, Size{2}, faces[a]);
+    const auto& f = faces[a];
+    if (!keys.reading() || f.size() < 2) continue;
+    const int axis = static_cast<int>(a);
+    if (std::adjacent_find(f.begin(), f.end(), [](Real p, Real q) { return !(p < q); }) != f.end()) {
+      keys.problem(names[a], "the coordinates do not increase; each larger than the one before");
+    }
+    const Real tolerance = 1e-9 * (domain.box.max[axis] - domain.box.min[axis]);
+    if (std::abs(f.front() - domain.box.min[axis]) > tolerance ||
+        std::abs(f.back() - domain.box.max[axis]) > tolerance) {
+      keys.problem(names[a], fmt::format("from {} to {} m it is not the domain; from {} to {} m", f.front(),
+                                         f.back(), domain.box.min[axis], domain.box.max[axis]));
+    }
+  }
+}
+
+/// `cells` or `faces`, with `growth` for stretched cells.
+void describe_grid(Keys& keys, GridSpec& grid, const DomainSpec& domain) {
+  const bool by_faces = !grid.faces[0].empty();
+  std::optional<std::vector<std::int64_t>> cells;
+  if (grid.cells.x > 0 && !by_faces)
+    cells = std::vector<std::int64_t>{grid.cells.x, grid.cells.y, grid.cells.z};
+  keys.wholes({"cells", "number of cells along x, y, z"}, cells_rule, Size::exactly(3), cells);
+  std::optional<std::vector<Real>> growth;
+  if (!by_faces) growth = std::vector<Real>{grid.growth.x, grid.growth.y, grid.growth.z};
+  keys.reals({"growth", "size of a cell over that of the one before it, along x, y, z; 1 is uniform"},
+             {dimension::pure_number, {.min = 0.5, .max = 2}}, Size::exactly(3), growth);
+  std::optional<std::array<std::vector<Real>, 3>> faces;
+  if (by_faces) faces = grid.faces;
+  keys.section<std::array<std::vector<Real>, 3>>(
+      {"faces", "coordinates of all cell faces, in place of cells"}, faces,
+      [&](Keys& inner, std::array<std::vector<Real>, 3>& f) { describe_faces(inner, f, domain); });
+  if (!keys.reading()) return;
+  if (cells) {
+    grid.cells = {static_cast<Index>((*cells)[0]), static_cast<Index>((*cells)[1]),
+                  static_cast<Index>((*cells)[2])};
+  }
+  if (growth) grid.growth = {(*growth)[0], (*growth)[1], (*growth)[2]};
+  if (faces) {
+    if (keys.given("growth")) keys.problem("growth", "faces say all about the cells; only with cells");
+    grid.faces = *faces;
+    for (int axis = 0; axis < 3; ++axis) {
+      grid.cells[axis] = static_cast<Index>((*faces)[static_cast<std::size_t>(axis)].size()) - 1;
+    }
+  }
+}
+
+/// The kinds of boundaries as keys of which one is given.
+struct BoundaryKinds {
+  std::optional<cfd::Inlet> inlet;
+  std::optional<cfd::Outlet> outlet;
+  std::optional<cfd::NoSlip> wall;
+  bool free_slip = false;
+  bool symmetry = false;
+};
+
+BoundaryKinds take_apart(const cfd::BoundaryPatch& patch) {
+  BoundaryKinds kinds;
+  if (const auto* inlet = std::get_if<cfd::Inlet>(&patch.kind)) kinds.inlet = *inlet;
+  if (const auto* outlet = std::get_if<cfd::Outlet>(&patch.kind)) kinds.outlet = *outlet;
+  if (const auto* wall = std::get_if<cfd::NoSlip>(&patch.kind)) kinds.wall = *wall;
+  kinds.free_slip = std::holds_alternative<cfd::FreeSlip>(patch.kind);
+  kinds.symmetry = std::holds_alternative<cfd::Symmetry>(patch.kind);
+  return kinds;
+}
+
+void put_together(const BoundaryKinds& kinds, cfd::BoundaryPatch& patch) {
+  if (kinds.inlet) patch.kind = *kinds.inlet;
+  if (kinds.outlet) patch.kind = *kinds.outlet;
+  if (kinds.wall) patch.kind = *kinds.wall;
+  if (kinds.free_slip) patch.kind = cfd::FreeSlip{};
+  if (kinds.symmetry) patch.kind = cfd::Symmetry{};
+}
+
+void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
+  if (keys.reading()) patch.where = keys.where();
+  keys.text({"name", "of the boundary", Need::required}, TextRule::name, patch.name);
+  std::optional<int> on;
+  if (!patch.name.empty()) on = static_cast<int>(patch.on);
+  keys.choice({"on", "side of the domain", Need::required}, domain_sides, on);
+  if (on) patch.on = static_cast<cfd::Side>(*on);
+
+  std::optional<cfd::BoundaryPatch> region;
+  if (patch.region) region = patch;
+  keys.section<cfd::BoundaryPatch>(
+      {"region", "the part of the side", Need::has_default, "what no other region of the side takes"}, region,
+      [](Keys& inner, cfd::BoundaryPatch& held) {
+        inner.section<Box>({"box", "the part of the side inside this box"}, held.region, describe_box);
+        inner.exactly_one({"box"});
+      });
+  if (keys.reading() && region) patch.region = region->region;
+
+  BoundaryKinds kinds = keys.reading() ? BoundaryKinds{} : take_apart(patch);
+  keys.section<cfd::Inlet>({"inlet", "gas comes in at right angles to the side"}, kinds.inlet,
+                           [](Keys& inner, cfd::Inlet& inlet) {
+                             inner.real({"velocity", "superficial, inward, over the open area"},
+                                        {dimension::velocity, range::non_negative}, inlet.velocity);
+                             inner.real({"flow_rate", "at the inlet's own temperature and pressure"},
+                                        {dimension::flow_rate, range::non_negative}, inlet.flow_rate);
+                             inner.exactly_one({"velocity", "flow_rate"});
+                           });
+  keys.section<cfd::Outlet>({"outlet", "gas leaves"}, kinds.outlet, [](Keys& inner, cfd::Outlet& outlet) {
+    inner.real({"pressure", "at the outlet, without its hydrostatic part"}, {dimension::pressure},
+               outlet.pressure);
+  });
+  keys.section<cfd::NoSlip>({"wall", "the gas sticks to it"}, kinds.wall, [](Keys& inner, cfd::NoSlip& wall) {
+    inner.vector({"velocity", "of the wall in its own plane"}, {dimension::velocity}, wall.velocity);
+  });
+  keys.mark({"free_slip", "a wall without shear"}, kinds.free_slip);
+  keys.mark({"symmetry", "a plane of symmetry"}, kinds.symmetry);
+  keys.exactly_one({"inlet", "outlet", "wall", "free_slip", "symmetry"});
+  if (keys.reading()) put_together(kinds, patch);
+  if (keys.reading() && kinds.wall && kinds.wall->velocity[cfd::axis_of(patch.on)] != 0) {
+    keys.problem("wall", "its velocity leads through the side; a velocity along the side");
+  }
+}
+
+void describe_solver(Keys& keys, cfd::GasSolverOptions& solver) {
+  constexpr core::RealRule tolerance{dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true}};
+  keys.real({"pressure_tolerance",
+             "of the last pressure solve of a step: sum of mass residuals over the gas throughput"},
+            tolerance, solver.pressure_tolerance);
+  keys.real({"loose_pressure_tolerance", "of the pressure solves before the last: reduction of the residual"},
+            tolerance, solver.loose_pressure_tolerance);
+  keys.real({"momentum_tolerance", "relative to the momentum that the gas exchanges in the step"}, tolerance,
+            solver.momentum_tolerance);
+  keys.real({"outer_tolerance", "relative change of the face velocities that ends the outer iterations"},
+            tolerance, solver.outer_tolerance);
+  keys.whole({"max_outer_iterations", "of the SIMPLEC loop of a step"}, {1, 10'000},
+             solver.max_outer_iterations);
+  keys.whole({"max_linear_iterations", "of one linear solve"}, {1, 1'000'000}, solver.max_linear_iterations);
+  keys.real({"velocity_relaxation", "below 1 only for steps of many Courant numbers"},
+            {dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true}}, solver.velocity_relaxation);
+  keys.choice({"pressure_solver", "both give the same answer to within the tolerance"}, pressure_solver_list,
+              solver.pressure_solver);
+}
+
+}  // namespace
+
+void describe_gas(Keys& keys, CaseSpec& spec) {
+  keys.section<GasSpec>(
+      {"gas", "the gas; without it the case is particles alone"}, spec.gas, [&](Keys& inner, GasSpec& gas) {
+        inner.real({"density", "of the gas", Need::required}, {dimension::density, range::positive},
+                   gas.options.density);
+        inner.real({"viscosity", "dynamic", Need::required}, {dimension::viscosity, range::positive},
+                   gas.options.viscosity);
+        inner.vector({"velocity", "initial"}, {dimension::velocity}, gas.velocity);
+        inner.vector({"body_force", "on the gas besides gravity"}, {dimension::force_per_volume},
+                     gas.options.body_force);
+        inner.section<GridSpec>({"grid", "cells of the domain", Need::required}, gas.grid,
+                                [&](Keys& k, GridSpec& grid) {
+                                  describe_grid(k, grid, spec.domain);
+                                  k.exactly_one({"cells", "faces"});
+                                });
+        inner.choice({"convection", "how the convected velocity gets from cells to faces"},
+                     cfd::convection_models, gas.options.convection);
+        inner.list<cfd::BoundaryPatch>(
+            {"boundaries", "regions on the sides; what none takes is a wall that the gas sticks to"}, {},
+            gas.boundaries, describe_boundary);
+        inner.section<cfd::GasSolverOptions>({"solver", "tolerances and limits"}, gas.options.solver,
+                                             describe_solver);
+        if (inner.reading()) gas.options.gravity = spec.gravity;
+      });
+}
+
+void describe_coupling(Keys& keys, CaseSpec& spec) {
+  std::optional<CouplingSpec> held;
+  if (!keys.reading() && spec.gas && !spec.particles.empty()) held = spec.coupling;
+  keys.section<CouplingSpec>(
+      {"coupling", "how gas and particles act on each other"}, held,
+      [&](Keys& inner, CouplingSpec& coupling) {
+        inner.choice({"drag", "law of the drag force"}, drag_laws, coupling.drag);
+        inner.choice({"deposition", "how a particle's volume is shared among cells"}, depositions,
+                     coupling.deposition);
+        std::optional<GridSpec> grid;
+        if (coupling.transfer_grid.cells.x > 0) grid = coupling.transfer_grid;
+        inner.section<GridSpec>(
+            {"transfer_grid", "cells in which the void fraction is counted", Need::has_default,
+             "the gas grid"},
+            grid, [&](Keys& k, GridSpec& transfer) {
+              describe_grid(k, transfer, spec.domain);
+              std::optional<Real> cell_size;
+              k.real({"cell_size", "of about cubic cells, in place of cells"},
+                     {dimension::length, range::positive}, cell_size);
+              k.exactly_one({"cells", "faces", "cell_size"});
+              if (!cell_size) return;
+              for (int axis = 0; axis < 3; ++axis) {
+                const Real cells =
+                    std::round((spec.domain.box.max[axis] - spec.domain.box.min[axis]) / *cell_size);
+                if (cells > static_cast<Real>(cells_rule.max)) {
+                  k.problem("cell_size", fmt::format("it gives {} cells along {}; at most {}", cells,
+                                                     "xyz"[axis], cells_rule.max));
+                  return;
+                }
+                transfer.cells[axis] = std::max(Index{1}, static_cast<Index>(cells));
+              }
+            });
+        if (inner.reading() && grid) coupling.transfer_grid = *grid;
+        inner.choice({"exchange", "how the gas gets the momentum that particles lose"}, exchanges,
+                     coupling.exchange);
+        inner.flag({"pressure_gradient_force", "particles feel the gradient of the gas pressure"},
+                   coupling.pressure_gradient_force);
+        inner.choice({"coefficients", "how often the momentum exchange coefficients are computed"},
+                     coefficients, coupling.coefficients);
+        inner.real({"minimum_void_fraction",
+                    "where particles leave less, the excess is spread to neighbouring cells"},
+                   {dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true, .max_excluded = true}},
+                   coupling.minimum_void_fraction);
+      });
+  if (keys.reading() && held) spec.coupling = *held;
+}
+
+}  // namespace pellicle::tools

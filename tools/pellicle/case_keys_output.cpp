@@ -1,0 +1,142 @@
+// Keys of what a run writes.
+#include <fmt/format.h>
+
+#include "tools/pellicle/case_keys.hpp"
+#include "tools/pellicle/model_families.hpp"
+#include "tools/pellicle/output_fields.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+using core::Keys;
+using core::Need;
+using core::Size;
+using core::TextRule;
+namespace dimension = core::dimension;
+namespace range = core::range;
+
+constexpr core::RealRule interval{dimension::duration, range::non_negative};
+
+void describe_snapshots(Keys& keys, SnapshotSpec& snapshots) {
+  keys.real({"every", "0: none"}, interval, snapshots.every);
+  keys.choices({"particles", "fields of particles.h5, besides the position"}, particle_snapshot_fields, {},
+               snapshots.particles);
+  keys.choices({"gas", "fields of gas.h5"}, gas_snapshot_fields, {}, snapshots.gas);
+}
+
+void describe_line(Keys& keys, LineSpec& line) {
+  if (keys.reading()) line.where = keys.where();
+  keys.text({"name", "of the file lines/NAME.csv", Need::required}, TextRule::name, line.name);
+  keys.vector({"from", "where it starts", Need::required}, {dimension::length}, line.from);
+  keys.vector({"to", "where it ends", Need::required}, {dimension::length}, line.to);
+  if (keys.reading() && keys.given("from") && keys.given("to") && line.from == line.to) {
+    keys.problem("to", "it is the same point as from; the other end of the line");
+  }
+  std::optional<Index> points;
+  if (line.points > 0) points = line.points;
+  keys.whole({"points", "number of bins along the line", Need::required}, {1, 1'000'000}, points);
+  if (points) line.points = *points;
+  keys.choice(
+      {"depth_average", "direction in which bins reach through the whole domain", Need::has_default, "none"},
+      axes, line.depth_average);
+  real_or_unset(keys,
+                {"thickness", "size of a bin across the line", Need::has_default,
+                 "one gas cell; without gas, length / points"},
+                {dimension::length, range::positive}, line.thickness);
+  std::optional<int> quantity;
+  if (!line.quantity.empty()) quantity = core::find_model(line_quantities, line.quantity);
+  keys.choice({"quantity", "what is averaged", Need::required}, line_quantities, quantity);
+  if (quantity) line.quantity = line_quantities[static_cast<std::size_t>(*quantity)].name;
+  keys.section<WindowSpec>({"average", "time over which samples are taken, one every gas step"}, line.average,
+                           [](Keys& inner, WindowSpec& window) {
+                             inner.real({"from", "start"}, interval, window.from);
+                             real_or_unset(inner, {"to", "end", Need::has_default, "time.end"},
+                                           {dimension::duration, range::positive}, window.to);
+                           });
+}
+
+/// The quantities that a kind of probe may show.
+core::ModelList quantities_of(const ProbeSpec& probe) {
+  if (probe.point) return gas_quantities;
+  if (probe.particle) return particle_quantities;
+  return bed_quantities;
+}
+
+void describe_probe(Keys& keys, ProbeSpec& probe) {
+  if (keys.reading()) probe.where = keys.where();
+  keys.text({"name", "of the file probes/NAME.csv", Need::required}, TextRule::name, probe.name);
+  keys.vector({"point", "gas at this point"}, {dimension::length}, probe.point);
+  keys.whole({"particle", "one particle by its id"}, {0}, probe.particle);
+  keys.mark({"bed", "all particles together"}, probe.bed);
+  keys.exactly_one({"point", "particle", "bed"});
+  std::optional<std::vector<int>> positions;
+  if (!probe.quantities.empty()) {
+    positions.emplace();
+    for (const auto& name : probe.quantities) positions->push_back(core::find_model(probe_quantities, name));
+  }
+  keys.choices({"quantities", "columns of the file", Need::has_default, "all that fit"}, probe_quantities,
+               Size{1}, positions);
+  keys.real({"every", "time between two rows"}, {dimension::duration, range::positive}, probe.every);
+  if (!keys.reading()) return;
+  const core::ModelList allowed = quantities_of(probe);
+  probe.quantities.clear();
+  if (!positions) {
+    for (const auto& quantity : allowed) probe.quantities.emplace_back(quantity.name);
+    return;
+  }
+  for (const int position : *positions) {
+    const auto name = probe_quantities[static_cast<std::size_t>(position)].name;
+    probe.quantities.emplace_back(name);
+    if (core::find_model(allowed, name) < 0) {
+      keys.problem("quantities",
+                   fmt::format("{} does not fit this kind of probe; {}", name, core::allowed_names(allowed)));
+    }
+  }
+}
+
+void describe_histogram(Keys& keys, HistogramSpec& histogram) {
+  static constexpr core::ModelInfo weights[] = {{"number", "each particle counts the same"},
+                                                {"mass", "each particle counts by its mass"}};
+  if (keys.reading()) histogram.where = keys.where();
+  keys.text({"name", "of the file histograms/NAME.csv", Need::required}, TextRule::name, histogram.name);
+  std::optional<int> quantity;
+  if (!histogram.quantity.empty()) quantity = core::find_model(particle_quantities, histogram.quantity);
+  keys.choice({"quantity", "of each particle", Need::required}, particle_quantities, quantity);
+  if (quantity) histogram.quantity = particle_quantities[static_cast<std::size_t>(*quantity)].name;
+  keys.whole({"bins", "number of bins"}, {1, 100'000}, histogram.bins);
+  keys.real({"min", "lower end of the first bin, SI", Need::has_default, "smallest value"}, {},
+            histogram.min);
+  keys.real({"max", "upper end of the last bin, SI", Need::has_default, "largest value"}, {}, histogram.max);
+  std::optional<int> weight = histogram.by_mass ? 1 : 0;
+  keys.choice({"weight", "what a particle counts"}, weights, weight);
+  histogram.by_mass = *weight == 1;
+  keys.real({"every", "time between two histograms; 0: only at the end"}, interval, histogram.every);
+  if (keys.reading() && histogram.min && histogram.max && !(*histogram.max > *histogram.min)) {
+    keys.problem("max", "it is not above min; a larger number");
+  }
+}
+
+}  // namespace
+
+void describe_output(Keys& keys, CaseSpec& spec) {
+  keys.section<OutputSpec>(
+      {"output", "what is written to the results folder, besides summary.json"}, spec.output,
+      [](Keys& inner, OutputSpec& output) {
+        inner.section<OutputSpec>({"checkpoint", "state from which a run can go on"}, output,
+                                  [](Keys& k, OutputSpec& o) {
+                                    k.real({"every", "simulated time between two; 0: only at the end"},
+                                           interval, o.checkpoint_every);
+                                  });
+        inner.section<SnapshotSpec>({"snapshots", "fields over time, for ParaView"}, output.snapshots,
+                                    describe_snapshots);
+        inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {}, output.lines,
+                             describe_line);
+        inner.list<ProbeSpec>({"probes", "values over time at points, of single particles, of the bed"}, {},
+                              output.probes, describe_probe);
+        inner.list<HistogramSpec>({"histograms", "distributions over the particles"}, {}, output.histograms,
+                                  describe_histogram);
+      });
+}
+
+}  // namespace pellicle::tools
