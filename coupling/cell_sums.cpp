@@ -1,0 +1,108 @@
+#include "coupling/cell_sums.hpp"
+
+#include <algorithm>
+
+namespace pellicle::coupling {
+
+namespace {
+
+/// Particle and pieces of an entry as one number that orders by particle first.
+KOKKOS_INLINE_FUNCTION std::uint64_t make_key(Index particle, Index pieces) {
+  return (static_cast<std::uint64_t>(particle) << 32) | static_cast<std::uint64_t>(pieces);
+}
+
+struct CountPerCell {
+  FootprintView footprint;
+  DeviceArray<Index> cursor;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index e) const {
+    Kokkos::atomic_inc(&cursor(footprint.entries(e).cell));
+  }
+};
+
+/// From counts to where each cell begins; the cursor starts there.
+struct ScanCells {
+  DeviceArray<Index> begin, cursor;
+  Index cells;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index c, Index& sum, const bool final) const {
+    const Index count = c < cells ? cursor(c) : 0;
+    if (final) {
+      begin(c) = sum;
+      if (c < cells) cursor(c) = sum;
+    }
+    sum += count;
+  }
+};
+
+/// Whole numbers only are exchanged between threads here; the order within a cell is put right afterwards.
+struct Scatter {
+  FootprintView footprint;
+  DeviceArray<Index> cursor;
+  DeviceArray<std::uint64_t> sorted;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
+    for (Index e = footprint.begin(p); e < footprint.begin(p + 1); ++e) {
+      const FootprintEntry entry = footprint.entries(e);
+      sorted(Kokkos::atomic_fetch_add(&cursor(entry.cell), 1)) = make_key(p, entry.pieces);
+    }
+  }
+};
+
+struct SortAndSum {
+  DeviceArray<Index> begin;
+  DeviceArray<std::uint64_t> sorted;
+  DeviceArray<CellLoad> load, result;
+  Real share;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index c) const {
+    const Index first = begin(c), last = begin(c + 1);
+    sort(first, last);
+    CellLoad sum;
+    for (Index e = first; e < last; ++e) {
+      const std::uint64_t key = sorted(e);
+      sum += (share * static_cast<Real>(key & 0xffffffffu)) * load(static_cast<Index>(key >> 32));
+    }
+    result(c) = sum;
+  }
+
+  /// Shell sort: linear on the nearly sorted runs that come from particles in spatial order, and bearable on any other.
+  KOKKOS_INLINE_FUNCTION void sort(Index first, Index last) const {
+    Index gap = 1;
+    while (gap < (last - first) / 9) gap = 3 * gap + 1;
+    for (; gap > 0; gap /= 3) {
+      for (Index i = first + gap; i < last; ++i) {
+        const std::uint64_t key = sorted(i);
+        Index j = i;
+        for (; j >= first + gap && sorted(j - gap) > key; j -= gap) sorted(j) = sorted(j - gap);
+        sorted(j) = key;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+CellSums::CellSums(Index cells) : cells_(cells) {
+  const auto size = static_cast<std::size_t>(cells);
+  begin_ = DeviceArray<Index>("coupling::cell_sums::begin", size + 1);
+  cursor_ = DeviceArray<Index>("coupling::cell_sums::cursor", size);
+}
+
+void CellSums::compute(const Footprint& footprint, const DeviceArray<CellLoad>& load,
+                       const DeviceArray<CellLoad>& result) {
+  const FootprintView& view = footprint.view();
+  if (sorted_.extent(0) < view.entries.extent(0)) {
+    sorted_ = DeviceArray<std::uint64_t>(
+        Kokkos::view_alloc("coupling::cell_sums::sorted", Kokkos::WithoutInitializing),
+        view.entries.extent(0));
+  }
+  Kokkos::deep_copy(Device(), cursor_, 0);
+  Kokkos::parallel_for("coupling::cell_sums::count_per_cell", DeviceRange(0, footprint.entry_count()),
+                       CountPerCell{view, cursor_});
+  Kokkos::parallel_scan("coupling::cell_sums::scan_cells", DeviceRange(0, cells_ + 1),
+                        ScanCells{begin_, cursor_, cells_});
+  Kokkos::parallel_for("coupling::cell_sums::scatter", DeviceRange(0, footprint.particle_count()),
+                       Scatter{view, cursor_, sorted_});
+  Kokkos::parallel_for("coupling::cell_sums::sort_and_sum", DeviceRange(0, cells_),
+                       SortAndSum{begin_, sorted_, load, result, view.share});
+}
+
+}  // namespace pellicle::coupling
