@@ -109,39 +109,27 @@ void gather_sorted(const Particles& particles, const AllowanceRule& rule,
       });
 }
 
-/// Visits every sorted slot whose particle's reach meets that of the particle in `slot`, in canonical order.
-template <class Visit>
-KOKKOS_INLINE_FUNCTION void visit_in_reach(const CellGrid& grid, const DeviceArray<std::int32_t>& cell_start,
-                                           const DeviceArray<PositionRadius>& sorted, Index slot,
-                                           const Visit& visit) {
-  const PositionRadius self = sorted(slot);
+/// Visits the runs of sorted slots that may hold a neighbour of the particle in `slot`, always in the same order.
+template <class Scan>
+KOKKOS_INLINE_FUNCTION void visit_runs(const CellGrid& grid, const DeviceArray<std::int32_t>& cell_start,
+                                       const PositionRadius& self, const Scan& scan) {
   const Index3 n = grid.cells;
-  const Domain& domain = grid.domain;
+  const Index3 periodic = grid.domain.periodic;
   const Index ci = grid.coordinate(0, self.x);
   const Index cj = grid.coordinate(1, self.y);
   const Index ck = grid.coordinate(2, self.z);
-  const bool repeats = domain.periodic.x + domain.periodic.y + domain.periodic.z != 0;
   // Along a periodic axis of fewer than three cells the neighbours on both sides are the same cell: visit it once.
-  const auto first = [](Index c, Index cells, Index periodic) {
-    return periodic != 0 ? (cells >= 3 ? c - 1 : Index{0}) : (c > 0 ? c - 1 : c);
+  const auto first = [](Index c, Index cells, Index repeats) {
+    return repeats != 0 ? (cells >= 3 ? c - 1 : Index{0}) : (c > 0 ? c - 1 : c);
   };
-  const auto last = [](Index c, Index cells, Index periodic) {
-    return periodic != 0 ? (cells >= 3 ? c + 1 : cells - 1) : (c < cells - 1 ? c + 1 : c);
+  const auto last = [](Index c, Index cells, Index repeats) {
+    return repeats != 0 ? (cells >= 3 ? c + 1 : cells - 1) : (c < cells - 1 ? c + 1 : c);
   };
   const auto wrapped = [](Index c, Index cells) { return c < 0 ? c + cells : (c >= cells ? c - cells : c); };
-  const auto scan = [&](std::int32_t begin, std::int32_t end) {
-    for (std::int32_t other = begin; other < end; ++other) {
-      const PositionRadius b = sorted(other);
-      Vec3 d{b.x - self.x, b.y - self.y, b.z - self.z};
-      if (repeats) d = domain.shortest(d);
-      const Real reach = self.radius + b.radius;
-      if (norm_squared(d) < reach * reach && other != slot) visit(other);
-    }
-  };
-  for (Index k = first(ck, n.z, domain.periodic.z); k <= last(ck, n.z, domain.periodic.z); ++k) {
-    for (Index j = first(cj, n.y, domain.periodic.y); j <= last(cj, n.y, domain.periodic.y); ++j) {
+  for (Index k = first(ck, n.z, periodic.z); k <= last(ck, n.z, periodic.z); ++k) {
+    for (Index j = first(cj, n.y, periodic.y); j <= last(cj, n.y, periodic.y); ++j) {
       const Index row = n.x * (wrapped(j, n.y) + n.y * wrapped(k, n.z));
-      if (domain.periodic.x == 0) {
+      if (periodic.x == 0) {
         // Cells of a row lie side by side in the sorted order: one run instead of three.
         scan(cell_start(row + first(ci, n.x, 0)), cell_start(row + last(ci, n.x, 0) + 1));
       } else {
@@ -154,46 +142,75 @@ KOKKOS_INLINE_FUNCTION void visit_in_reach(const CellGrid& grid, const DeviceArr
   }
 }
 
-void count_pairs(const CellGrid& grid, Index count, const DeviceArray<std::int32_t>& cell_start,
-                 const DeviceArray<std::int32_t>& order, const DeviceArray<PositionRadius>& sorted,
-                 const DeviceArray<DevicePlane>& walls, const DeviceArray<std::int32_t>& pair_count,
-                 const DeviceArray<std::int32_t>& wall_count) {
-  const auto wall_total = static_cast<Index>(walls.extent(0));
-  Kokkos::parallel_for(
-      "dem::neighbour_list::count_pairs", DeviceRange(0, count), KOKKOS_LAMBDA(const Index slot) {
-        const Index p = order(slot);
-        std::int32_t pairs = 0;
-        visit_in_reach(grid, cell_start, sorted, slot, [&pairs](std::int32_t) { ++pairs; });
-        pair_count(p) = pairs;
-        std::int32_t near = 0;
-        const PositionRadius self = sorted(slot);
-        for (Index w = 0; w < wall_total; ++w)
-          near += walls(w).distance(self.position()) < self.radius ? 1 : 0;
-        wall_count(p) = near;
-      });
+/// Whether two entries of the sorted array may touch before the next build.
+template <bool Repeats>
+KOKKOS_INLINE_FUNCTION bool in_reach(const Domain& domain, const PositionRadius& a, const PositionRadius& b) {
+  Vec3 d{b.x - a.x, b.y - a.y, b.z - a.z};
+  if constexpr (Repeats) d = domain.shortest(d);
+  const Real reach = a.radius + b.radius;
+  return norm_squared(d) < reach * reach;
 }
 
-void fill_pairs(const CellGrid& grid, Index count, const DeviceArray<std::int32_t>& cell_start,
-                const DeviceArray<std::int32_t>& order, const DeviceArray<PositionRadius>& sorted,
-                const DeviceArray<DevicePlane>& walls, const NeighbourList& list) {
-  const auto wall_total = static_cast<Index>(walls.extent(0));
-  const auto offset = list.offset;
-  const auto partner = list.partner;
-  const auto wall_offset = list.wall_offset;
-  const auto wall = list.wall;
-  Kokkos::parallel_for(
-      "dem::neighbour_list::fill_pairs", DeviceRange(0, count), KOKKOS_LAMBDA(const Index slot) {
-        const Index p = order(slot);
-        std::int32_t entry = offset(p);
-        visit_in_reach(grid, cell_start, sorted, slot,
-                       [&entry, &partner, &order](std::int32_t other) { partner(entry++) = order(other); });
-        std::int32_t wall_entry = wall_offset(p);
-        const PositionRadius self = sorted(slot);
-        for (Index w = 0; w < wall_total; ++w) {
-          if (walls(w).distance(self.position()) < self.radius) wall(wall_entry++) = w;
+template <bool Repeats>
+struct CountPairs {
+  CellGrid grid;
+  DeviceArray<std::int32_t> cell_start, order;
+  DeviceArray<PositionRadius> sorted;
+  DeviceArray<DevicePlane> walls;
+  DeviceArray<std::int32_t> pair_count, wall_count;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index slot) const {
+    const PositionRadius self = sorted(slot);
+    const PositionRadius* const place = sorted.data();
+    const Domain& domain = grid.domain;
+    std::int32_t pairs = -1;  // the particle itself is within its own reach
+    visit_runs(grid, cell_start, self, [&](std::int32_t begin, std::int32_t end) {
+      // No branch: the outcome cannot be predicted.
+      for (std::int32_t o = begin; o < end; ++o) pairs += in_reach<Repeats>(domain, self, place[o]) ? 1 : 0;
+    });
+    const Index p = order(slot);
+    pair_count(p) = pairs;
+    std::int32_t near = 0;
+    const auto wall_total = static_cast<Index>(walls.extent(0));
+    for (Index w = 0; w < wall_total; ++w) near += walls(w).distance(self.position()) < self.radius ? 1 : 0;
+    wall_count(p) = near;
+  }
+};
+
+template <bool Repeats>
+struct FillPairs {
+  CellGrid grid;
+  DeviceArray<std::int32_t> cell_start, order;
+  DeviceArray<PositionRadius> sorted;
+  DeviceArray<DevicePlane> walls;
+  NeighbourList list;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index slot) const {
+    const PositionRadius self = sorted(slot);
+    const PositionRadius* const place = sorted.data();
+    const Domain& domain = grid.domain;
+    const Index p = order(slot);
+    std::int32_t entry = list.offset(p);
+    visit_runs(grid, cell_start, self, [&](std::int32_t begin, std::int32_t end) {
+      constexpr std::int32_t part = 64;
+      std::int32_t found[part + 1];
+      for (std::int32_t start = begin; start < end; start += part) {
+        const std::int32_t stop = start + part < end ? start + part : end;
+        std::int32_t n = 0;
+        for (std::int32_t o = start; o < stop; ++o) {
+          found[n] = o;
+          n += (in_reach<Repeats>(domain, self, place[o]) ? 1 : 0) & (o != slot ? 1 : 0);
         }
-      });
-}
+        for (std::int32_t f = 0; f < n; ++f) list.partner(entry++) = order(found[f]);
+      }
+    });
+    std::int32_t wall_entry = list.wall_offset(p);
+    const auto wall_total = static_cast<Index>(walls.extent(0));
+    for (Index w = 0; w < wall_total; ++w) {
+      if (walls(w).distance(self.position()) < self.radius) list.wall(wall_entry++) = w;
+    }
+  }
+};
 
 /// The last entry of an offsets array: the total.
 std::size_t read_total(const DeviceArray<std::int32_t>& offset, Index n) {
@@ -254,12 +271,28 @@ void NeighbourSearch::build(const Particles& particles, const DeviceArray<Device
   const AllowanceRule rule{skin_.steps * time_step, skin_.smallest_fraction * smallest_radius_,
                            skin_.largest_fraction * largest_radius_};
   gather_sorted(particles, rule, order_, sorted_, list);
-  count_pairs(grid, particles.count, cell_start_, order_, sorted_, walls, pair_count_, wall_count_);
+  const bool repeats = domain_.periodic.x + domain_.periodic.y + domain_.periodic.z != 0;
+  const DeviceRange all(0, particles.count);
+  if (repeats) {
+    Kokkos::parallel_for(
+        "dem::neighbour_list::count_periodic", all,
+        CountPairs<true>{grid, cell_start_, order_, sorted_, walls, pair_count_, wall_count_});
+  } else {
+    Kokkos::parallel_for(
+        "dem::neighbour_list::count", all,
+        CountPairs<false>{grid, cell_start_, order_, sorted_, walls, pair_count_, wall_count_});
+  }
   offsets_from_counts(pair_count_, list.offset, particles.count, "dem::neighbour_list::pair_offsets");
   offsets_from_counts(wall_count_, list.wall_offset, particles.count, "dem::neighbour_list::wall_offsets");
   ensure_size(list.partner, read_total(list.offset, particles.count), "dem::neighbour_list::partner");
   ensure_size(list.wall, read_total(list.wall_offset, particles.count), "dem::neighbour_list::wall");
-  fill_pairs(grid, particles.count, cell_start_, order_, sorted_, walls, list);
+  if (repeats) {
+    Kokkos::parallel_for("dem::neighbour_list::fill_periodic", all,
+                         FillPairs<true>{grid, cell_start_, order_, sorted_, walls, list});
+  } else {
+    Kokkos::parallel_for("dem::neighbour_list::fill", all,
+                         FillPairs<false>{grid, cell_start_, order_, sorted_, walls, list});
+  }
 }
 
 void wrap_periodic(const Domain& domain, const Particles& particles) {
