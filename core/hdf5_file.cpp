@@ -182,6 +182,13 @@ std::vector<std::size_t> Hdf5File::shape(std::string_view name) const {
   return {extent.begin(), extent.end()};
 }
 
+bool Hdf5File::holds_integers(std::string_view name) const {
+  const Handle data(H5Dopen2(file_, std::string(name).c_str(), H5P_DEFAULT), H5Dclose);
+  if (!data.ok()) fail(fmt::format("{} is missing", name));
+  const Handle type(H5Dget_type(data), H5Tclose);
+  return H5Tget_class(type) == H5T_INTEGER;
+}
+
 std::vector<std::string> Hdf5File::members(std::string_view group) const {
   const Handle id(H5Gopen2(file_, std::string(group).c_str(), H5P_DEFAULT), H5Gclose);
   if (!id.ok()) fail(fmt::format("group {} is missing", group));
@@ -245,6 +252,10 @@ void Hdf5File::set_attribute(std::string_view object, std::string_view name, con
   if (!write_attribute(file_, object, name, type, space, text.c_str())) {
     fail(fmt::format("attribute {} of {} cannot be written", name, object));
   }
+}
+
+bool Hdf5File::has_attribute(std::string_view object, std::string_view name) const {
+  return H5Aexists_by_name(file_, std::string(object).c_str(), std::string(name).c_str(), H5P_DEFAULT) > 0;
 }
 
 double Hdf5File::attribute_double(std::string_view object, std::string_view name) const {

@@ -49,6 +49,7 @@ class Hdf5File {
 
   bool has(std::string_view name) const;
   std::vector<std::size_t> shape(std::string_view name) const;
+  bool holds_integers(std::string_view name) const;
   /// Names of the members of a group ("/" for the file), sorted.
   std::vector<std::string> members(std::string_view group) const;
   /// Removes a data set or a group with all its members.
@@ -58,6 +59,7 @@ class Hdf5File {
   void set_attribute(std::string_view object, std::string_view name, double value);
   void set_attribute(std::string_view object, std::string_view name, std::int64_t value);
   void set_attribute(std::string_view object, std::string_view name, const std::string& text);
+  bool has_attribute(std::string_view object, std::string_view name) const;
   double attribute_double(std::string_view object, std::string_view name) const;
   std::int64_t attribute_int64(std::string_view object, std::string_view name) const;
 

@@ -76,7 +76,7 @@ inline constexpr std::array<core::ModelInfo, 11> bed_quantities{{
     {"pressure_drop", "mean gas pressure of the lowest minus that of the highest layer of cells [Pa]"},
     {"gas_kinetic_energy", "kinetic energy of all gas [J]"},
     {"contacts_per_particle", "twice the touching pairs of particles over the number of particles [-]"},
-    {"largest_overlap", "largest overlap since the last line, as a fraction of the radius [-]"},
+    {"largest_overlap", "largest overlap since the start, as a fraction of the radius [-]"},
     {"particles", "number of particles in the domain [-]"},
     {"solids_volume", "volume of all particles [m3]"},
 }};

@@ -1,0 +1,68 @@
+#include "tools/pellicle/gas_fields.hpp"
+
+#include <stdexcept>
+
+#include "tools/pellicle/output_fields.hpp"
+
+namespace pellicle::tools {
+
+Real gas_quantity(const GasFields& gas, int quantity, Index cell) {
+  switch (quantity) {
+    case 0:
+    case 1:
+    case 2:
+      return gas.velocity(cell)[quantity];
+    case 3:
+      return norm(gas.velocity(cell));
+    case 4:
+    case 5:
+    case 6:
+      return gas.void_fraction_of(cell) * gas.velocity(cell)[quantity - 4];
+    case 7:
+      return gas.pressure(cell);
+    case 8:
+      return gas.void_fraction_of(cell);
+    case 9:
+      return 1 - gas.void_fraction_of(cell);
+    default:
+      break;
+  }
+  throw std::logic_error("a gas quantity without a value");
+}
+static_assert(gas_quantities.size() == 10 && gas_quantities[3].name == "gas_speed" &&
+                  gas_quantities[4].name == "superficial_velocity_x" &&
+                  gas_quantities[9].name == "solids_fraction",
+              "the codes above are positions in gas_quantities");
+
+Real pressure_drop(const GasFields& gas) {
+  const CartesianGrid& grid = *gas.grid;
+  const Index3 n = grid.cells();
+  Real area = 0, bottom = 0, top = 0;
+  for (Index j = 0; j < n.y; ++j) {
+    for (Index i = 0; i < n.x; ++i) {
+      const Real a = grid.width(0, i) * grid.width(1, j);
+      area += a;
+      bottom += a * gas.pressure(grid.index(i, j, 0));
+      top += a * gas.pressure(grid.index(i, j, n.z - 1));
+    }
+  }
+  return (bottom - top) / area;
+}
+
+Real gas_kinetic_energy(const GasFields& gas) {
+  const CartesianGrid& grid = *gas.grid;
+  const Index3 n = grid.cells();
+  Real energy = 0;
+  for (Index k = 0; k < n.z; ++k) {
+    for (Index j = 0; j < n.y; ++j) {
+      for (Index i = 0; i < n.x; ++i) {
+        const Index cell = grid.index(i, j, k);
+        energy += 0.5 * gas.density * gas.void_fraction_of(cell) * norm_squared(gas.velocity(cell)) *
+                  grid.volume(i, j, k);
+      }
+    }
+  }
+  return energy;
+}
+
+}  // namespace pellicle::tools

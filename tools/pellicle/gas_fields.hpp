@@ -1,0 +1,33 @@
+// The gas as outputs see it: views of the solver's fields, and the numbers that can be shown of a cell.
+#pragma once
+
+#include "core/cartesian_grid.hpp"
+#include "core/types.hpp"
+#include "core/vector.hpp"
+#include "core/views.hpp"
+
+namespace pellicle::tools {
+
+/// Fields at cell centres, index i + nx (j + ny k). A field that a run does not have stays empty: it cannot be shown,
+/// except the void fraction, which is then 1.
+struct GasFields {
+  const CartesianGrid* grid = nullptr;
+  HostArray<const Vec3> velocity;           ///< interstitial [m/s]
+  HostArray<const Real> pressure;           ///< without the hydrostatic part [Pa]
+  HostArray<const Real> void_fraction;      ///< [-]
+  HostArray<const Vec3> pressure_gradient;  ///< [Pa/m]
+  Real density = 0;                         ///< [kg/m3]
+
+  Real void_fraction_of(Index cell) const { return void_fraction.extent(0) > 0 ? void_fraction(cell) : 1; }
+};
+
+/// Value of gas_quantities[quantity] (output_fields.hpp) in a cell.
+Real gas_quantity(const GasFields& gas, int quantity, Index cell);
+
+/// Mean pressure of the lowest minus that of the highest layer of cells [Pa], weighted by area.
+Real pressure_drop(const GasFields& gas);
+
+/// Sum of 1/2 rho eps |u|^2 V over the cells [J].
+Real gas_kinetic_energy(const GasFields& gas);
+
+}  // namespace pellicle::tools

@@ -1,0 +1,41 @@
+// Sums of a particle quantity over the bins of a line, on the device.
+#pragma once
+
+#include <vector>
+
+#include "core/types.hpp"
+#include "core/views.hpp"
+#include "dem/particles.hpp"
+#include "tools/pellicle/line_geometry.hpp"
+
+namespace pellicle::tools {
+
+/// Number of samples, their sum and the sum of their squares, one entry a bin.
+struct BinSums {
+  std::vector<std::int64_t> samples;
+  std::vector<double> sum, square;
+};
+
+/// The bins of one line. Each add() counts every particle whose centre lies in a bin as one sample of that bin.
+/// The sums are formed in the order of the particles in memory, by one thread a bin, so that they do not depend on
+/// the number of threads.
+class ParticleLine {
+ public:
+  /// `quantity`: position in particle_quantities.
+  ParticleLine(const LineGeometry& line, int quantity);
+
+  void add(const dem::Particles& particles);
+
+  BinSums sums() const;
+  void set_sums(const BinSums& sums);
+
+ private:
+  LineGeometry line_;
+  int quantity_;
+  DeviceArray<std::int64_t> samples_;
+  DeviceArray<Real> sum_, square_;
+  DeviceArray<Index> hit_bin_;  ///< of the particles in the line, in their order
+  DeviceArray<Real> hit_value_;
+};
+
+}  // namespace pellicle::tools

@@ -1,0 +1,162 @@
+#include "tools/pellicle/probes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "tools/pellicle/output_fields.hpp"
+#include "tools/pellicle/particle_quantities.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+std::vector<int> find_all(core::ModelList known, const ProbeSpec& spec) {
+  std::vector<int> found;
+  for (const auto& quantity : spec.quantities) {
+    found.push_back(core::find_model(known, quantity));
+    if (found.back() < 0) {
+      std::string names;
+      for (const auto& info : known) names += (names.empty() ? "" : ", ") + std::string(info.name);
+      throw InputError(fmt::format("{}: unknown quantity {}; allowed: {}", spec.where, quantity, names));
+    }
+  }
+  return found;
+}
+
+core::ModelList known_quantities(const ProbeSpec& spec) {
+  if (spec.bed) return bed_quantities;
+  if (spec.particle) return particle_quantities;
+  return gas_quantities;
+}
+
+std::vector<std::string> probe_header(const ProbeSpec& spec) {
+  std::vector<std::string> header{"time [s]"};
+  for (const auto& quantity : spec.quantities) header.push_back(column_header(quantity));
+  return header;
+}
+
+Index cell_of(const ProbeSpec& spec, const CartesianGrid* grid) {
+  if (!spec.point) return 0;
+  if (grid == nullptr) throw InputError(spec.where + ": a point probe shows the gas, and this case has none");
+  const Vec3& at = *spec.point;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (at[axis] < grid->box().min[axis] || at[axis] > grid->box().max[axis]) {
+      throw InputError(fmt::format("{}: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the gas grid",
+                                   spec.where, at.x, at.y, at.z));
+    }
+  }
+  return grid->index(grid->locate(0, at.x), grid->locate(1, at.y), grid->locate(2, at.z));
+}
+
+}  // namespace
+
+const HostParticles& OutputState::host_particles() const {
+  if (!copied_particles) copied_particles = particles != nullptr ? copy_to_host(*particles) : HostParticles{};
+  return *copied_particles;
+}
+
+Probes::Probes(const std::vector<ProbeSpec>& specs, core::TimeControl& time, const ResultsFolder& folder,
+               const Box& domain, const CartesianGrid* gas_grid, std::optional<Real> resume_time)
+    : floor_(domain.min.z) {
+  for (const auto& spec : specs) {
+    auto quantities = find_all(known_quantities(spec), spec);
+    const Index cell = cell_of(spec, gas_grid);
+    // Without `every`: after each outer step.
+    const core::Schedule schedule = spec.every > 0
+                                        ? time.schedule(spec.every, "output.probes." + spec.name + ".every")
+                                        : core::Schedule{1};
+    probes_.push_back({spec, schedule, std::move(quantities), cell,
+                       core::CsvSeries(folder.csv("probes", spec.name), probe_header(spec), resume_time)});
+  }
+}
+
+void Probes::append(Probe& probe, const OutputState& state) {
+  std::vector<double> row{state.time};
+  if (probe.spec.bed) {
+    const BedFigures bed = compute_bed_figures(state.host_particles(), floor_);
+    for (const auto& name : probe.spec.quantities)
+      row.push_back(bed_quantity(name, bed, state.gas, state.contacts));
+  } else if (probe.spec.particle) {
+    ParticleSample particle;
+    const bool found =
+        state.particles != nullptr && finder_.find(*state.particles, *probe.spec.particle, particle);
+    for (const int quantity : probe.quantities) {
+      row.push_back(found ? particle_quantity(quantity, particle.position_radius, particle.velocity_spin,
+                                              particle.mass, particle.acceleration)
+                          : std::nan(""));
+    }
+  } else {
+    for (const int quantity : probe.quantities) row.push_back(gas_quantity(*state.gas, quantity, probe.cell));
+  }
+  probe.file.append(row);
+}
+
+void Probes::sample(const OutputState& state) {
+  for (auto& probe : probes_) {
+    if (probe.schedule.due(state.step)) append(probe, state);
+  }
+}
+
+void Probes::flush() {
+  for (auto& probe : probes_) probe.file.flush();
+}
+
+Histograms::Histograms(const std::vector<HistogramSpec>& specs, core::TimeControl& time,
+                       const ResultsFolder& folder, std::optional<Real> resume_time) {
+  for (const auto& spec : specs) {
+    const int quantity = core::find_model(particle_quantities, spec.quantity);
+    if (quantity < 0) throw InputError(fmt::format("{}: unknown quantity {}", spec.where, spec.quantity));
+    const auto unit = std::string(unit_of(particle_quantities[static_cast<std::size_t>(quantity)]));
+    const std::vector<std::string> header{"time [s]", fmt::format("{}_from [{}]", spec.quantity, unit),
+                                          fmt::format("{}_to [{}]", spec.quantity, unit),
+                                          spec.by_mass ? "mass [kg]" : "count [-]",
+                                          fmt::format("density [1/({})]", unit)};
+    histograms_.push_back({spec, time.schedule(spec.every, "output.histograms." + spec.name + ".every"),
+                           quantity,
+                           core::CsvSeries(folder.csv("histograms", spec.name), header, resume_time)});
+  }
+}
+
+void Histograms::sample(const OutputState& state) {
+  for (auto& histogram : histograms_) {
+    if (!histogram.schedule.due(state.step)) continue;
+    const HistogramSpec& spec = histogram.spec;
+    const HostParticles& particles = state.host_particles();
+    if (particles.count() == 0) continue;
+    std::vector<Real> values(particles.count());
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      values[p] = particle_quantity(histogram.quantity, particles.position_radius[p],
+                                    particles.velocity_spin[p], particles.mass[p], particles.acceleration[p]);
+    }
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    const Real from = spec.min.value_or(*least);
+    Real to = spec.max.value_or(*most);
+    // All equal: one bin's width around the value, so that the bins have a size.
+    if (!(to > from)) to = from + std::max(1e-12, 1e-6 * std::abs(from));
+    const auto bins = static_cast<std::size_t>(spec.bins);
+    const Real width = (to - from) / spec.bins;
+    std::vector<Real> amount(bins);
+    Real total = 0;
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      const Real weight = spec.by_mass ? particles.mass[p] : 1;
+      total += weight;
+      if (values[p] < from || values[p] > to) continue;
+      amount[std::min(bins - 1, static_cast<std::size_t>((values[p] - from) / width))] += weight;
+    }
+    for (std::size_t b = 0; b < bins; ++b) {
+      const Real low = from + width * static_cast<Real>(b);
+      const std::array<double, 5> row{state.time, low, low + width, amount[b], amount[b] / (total * width)};
+      histogram.file.append(row);
+    }
+  }
+}
+
+void Histograms::flush() {
+  for (auto& histogram : histograms_) histogram.file.flush();
+}
+
+}  // namespace pellicle::tools

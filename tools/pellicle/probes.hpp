@@ -1,0 +1,78 @@
+// Time series: at a point of the gas, of one particle, of the whole bed (probes/NAME.csv), and distributions of a
+// particle quantity (histograms/NAME.csv).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/csv.hpp"
+#include "core/time_control.hpp"
+#include "tools/pellicle/bed.hpp"
+#include "tools/pellicle/case_spec.hpp"
+#include "tools/pellicle/find_particle.hpp"
+#include "tools/pellicle/gas_fields.hpp"
+#include "tools/pellicle/results_folder.hpp"
+
+namespace pellicle::tools {
+
+/// The state that outputs look at, after an outer step. `host_particles()` copies the particles once a step at most,
+/// and only if an output of that step asks for them.
+struct OutputState {
+  std::int64_t step = 0;
+  Real time = 0;                              ///< [s]
+  const dem::Particles* particles = nullptr;  ///< null without particles
+  const GasFields* gas = nullptr;             ///< null without gas
+  ContactFigures contacts{};
+
+  /// Empty without particles.
+  const HostParticles& host_particles() const;
+  mutable std::optional<HostParticles> copied_particles{};
+};
+
+/// All probes of a case.
+class Probes {
+ public:
+  /// With `resume_time` the files that are there are continued. Throws InputError for an unknown quantity, or a point
+  /// probe without gas or outside its grid.
+  Probes(const std::vector<ProbeSpec>& specs, core::TimeControl& time, const ResultsFolder& folder,
+         const Box& domain, const CartesianGrid* gas_grid, std::optional<Real> resume_time);
+
+  void sample(const OutputState& state);
+  void flush();
+
+ private:
+  struct Probe {
+    ProbeSpec spec;
+    core::Schedule schedule;
+    std::vector<int> quantities;  ///< positions in the list of the probe's kind
+    Index cell = 0;               ///< of a point
+    core::CsvSeries file;
+  };
+  void append(Probe& probe, const OutputState& state);
+
+  std::vector<Probe> probes_;
+  ParticleFinder finder_;
+  Real floor_;
+};
+
+/// All histograms of a case: rows time, from, to, count or mass, density (share of the total per unit of the quantity).
+class Histograms {
+ public:
+  Histograms(const std::vector<HistogramSpec>& specs, core::TimeControl& time, const ResultsFolder& folder,
+             std::optional<Real> resume_time);
+
+  void sample(const OutputState& state);
+  void flush();
+
+ private:
+  struct Histogram {
+    HistogramSpec spec;
+    core::Schedule schedule;
+    int quantity = 0;
+    core::CsvSeries file;
+  };
+  std::vector<Histogram> histograms_;
+};
+
+}  // namespace pellicle::tools

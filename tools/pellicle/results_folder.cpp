@@ -1,0 +1,84 @@
+#include "tools/pellicle/results_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/error.hpp"
+#include "core/files.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array files{"case.yaml",      "run.log", "summary.json", "particles.h5",
+                           "particles.xdmf", "gas.h5",  "gas.xdmf",     "checkpoint.h5"};
+constexpr std::array subfolders{"lines", "probes", "histograms"};
+
+bool holds_results(const fs::path& folder) {
+  return fs::exists(folder / "case.yaml") || fs::exists(folder / "summary.json") ||
+         fs::exists(folder / "run.log") || fs::exists(folder / "checkpoint.h5");
+}
+
+void remove_results(const fs::path& folder) {
+  for (const char* name : files) {
+    fs::remove(folder / name);
+    fs::remove(core::temporary_name(folder / name));
+  }
+  for (const char* name : subfolders) {
+    if (!fs::is_directory(folder / name)) continue;
+    for (const auto& entry : fs::directory_iterator(folder / name)) {
+      const auto extension = entry.path().extension();
+      if (extension == ".csv" || extension == ".tmp" || extension == ".old") fs::remove(entry.path());
+    }
+    std::error_code not_empty;
+    fs::remove(folder / name, not_empty);
+  }
+}
+
+}  // namespace
+
+ResultsFolder::ResultsFolder(fs::path folder, Existing existing) : path_(std::move(folder)) {
+  try {
+    if (fs::exists(path_)) {
+      if (!fs::is_directory(path_))
+        throw InputError(path_.string() + ": is a file, not a folder for results");
+      if (!holds_results(path_)) {
+        if (!fs::is_empty(path_)) {
+          throw InputError(
+              path_.string() +
+              ": holds files but no results of an earlier run; give another folder with --output");
+        }
+      } else if (existing == Existing::refuse) {
+        throw InputError(
+            path_.string() +
+            ": holds results already; --overwrite replaces them, --resume goes on with that run, "
+            "--output names another folder");
+      } else if (existing == Existing::overwrite) {
+        remove_results(path_);
+      }
+    }
+    fs::create_directories(path_);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(
+        fmt::format("{}: cannot be used for results: {}", path_.string(), error.code().message()));
+  }
+}
+
+fs::path ResultsFolder::csv(std::string_view kind, const std::string& name) const {
+  const fs::path subfolder = path_ / kind;
+  std::error_code error;
+  fs::create_directories(subfolder, error);
+  if (error) throw RunError(fmt::format("{}: cannot be made: {}", subfolder.string(), error.message()));
+  return subfolder / (name + ".csv");
+}
+
+bool ResultsFolder::has_checkpoint() const { return fs::exists(checkpoint()); }
+
+void ResultsFolder::write_case(const std::string& resolved_yaml) const {
+  core::write_file_atomically(case_file(), resolved_yaml);
+}
+
+}  // namespace pellicle::tools

@@ -1,0 +1,181 @@
+#include "tools/pellicle/snapshots.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "core/hdf5_file.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+std::string data_item(const std::string& h5_path, const std::vector<std::size_t>& shape, bool integer) {
+  return fmt::format(
+      "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">{}</DataItem>\n",
+      fmt::join(shape, " "), integer ? "Int" : "Float", integer ? 4 : 8, h5_path);
+}
+
+std::string attribute(const SnapshotArray& array, const std::string& h5_path, const char* center,
+                      bool vector) {
+  return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">\n{}</Attribute>\n",
+                     array.name, vector ? "Vector" : "Scalar", center,
+                     data_item(h5_path, array.shape, array.integer));
+}
+
+// --- particles -------------------------------------------------------------------------------------------------
+
+/// A cloud of points. An empty one gets a single point without data, since readers refuse a grid of nothing.
+std::string describe_particles(const std::string& h5_name, const SnapshotRecord& record) {
+  const std::string base = h5_name + ":/" + record.group + "/";
+  std::size_t count = 0;
+  for (const auto& array : record.arrays) {
+    if (array.name == "position") count = array.shape.front();
+  }
+  if (count == 0) {
+    return "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"1\"/>\n<Geometry GeometryType=\"XYZ\">\n"
+           "<DataItem Dimensions=\"1 3\" Format=\"XML\">0 0 0</DataItem>\n</Geometry>\n";
+  }
+  std::string text = fmt::format(
+      "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>\n<Geometry GeometryType=\"XYZ\">\n{}"
+      "</Geometry>\n",
+      count, data_item(base + "position", {count, 3}, false));
+  for (const auto& array : record.arrays) {
+    if (array.name == "position") continue;
+    text += attribute(array, base + array.name, "Node", array.shape.size() == 2);
+  }
+  return text;
+}
+
+/// Writes one array with a value from each particle.
+template <class Value>
+void write_per_particle(core::Hdf5File& file, const std::string& name, const HostParticles& particles,
+                        const Value& value) {
+  using T = std::remove_cvref_t<decltype(value(std::size_t{0}))>;
+  if constexpr (std::is_same_v<T, Vec3>) {
+    std::vector<double> numbers(3 * particles.count());
+    for (std::size_t p = 0; p < particles.count(); ++p) {
+      const Vec3 v = value(p);
+      numbers[3 * p] = v.x;
+      numbers[3 * p + 1] = v.y;
+      numbers[3 * p + 2] = v.z;
+    }
+    file.write(name, std::span<const double>(numbers), std::array<std::size_t, 2>{particles.count(), 3});
+  } else {
+    std::vector<T> numbers(particles.count());
+    for (std::size_t p = 0; p < numbers.size(); ++p) numbers[p] = value(p);
+    file.write(name, std::span<const T>(numbers));
+  }
+}
+
+void write_particle_field(core::Hdf5File& file, const std::string& group, const std::string& field,
+                          const HostParticles& particles) {
+  const std::string name = group + "/" + field;
+  const auto put = [&](const auto& value) { write_per_particle(file, name, particles, value); };
+  const auto& places = particles.position_radius;
+  const auto& motions = particles.velocity_spin;
+  if (field == "position") {
+    put([&](std::size_t p) { return places[p].position(); });
+  } else if (field == "id") {
+    put([&](std::size_t p) { return motions[p].id; });
+  } else if (field == "velocity") {
+    put([&](std::size_t p) { return motions[p].velocity(); });
+  } else if (field == "spin") {
+    put([&](std::size_t p) { return motions[p].spin(); });
+  } else if (field == "radius") {
+    put([&](std::size_t p) { return places[p].radius; });
+  } else if (field == "diameter") {
+    put([&](std::size_t p) { return 2 * places[p].radius; });
+  } else if (field == "mass") {
+    put([&](std::size_t p) { return particles.mass[p]; });
+  } else if (field == "material") {
+    put([&](std::size_t p) { return motions[p].material; });
+  } else if (field == "speed") {
+    put([&](std::size_t p) { return norm(motions[p].velocity()); });
+  } else if (field == "acceleration") {
+    put([&](std::size_t p) { return particles.acceleration[p]; });
+  } else {
+    throw std::logic_error("no particle field " + field);
+  }
+}
+
+// --- gas -------------------------------------------------------------------------------------------------------
+
+/// A rectilinear grid; XDMF counts its points, slowest index (z) first.
+std::string describe_gas(const std::string& h5_name, const SnapshotRecord& record) {
+  const auto& shape = record.arrays.front().shape;
+  const std::array<std::size_t, 3> cells{shape.at(0), shape.at(1), shape.at(2)};
+  std::string text = fmt::format(
+      "<Topology TopologyType=\"3DRectMesh\" Dimensions=\"{} {} {}\"/>\n<Geometry "
+      "GeometryType=\"VXVYVZ\">\n",
+      cells[0] + 1, cells[1] + 1, cells[2] + 1);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    text += data_item(fmt::format("{}:/grid/{}", h5_name, "xyz"[axis]), {cells[2 - axis] + 1}, false);
+  }
+  text += "</Geometry>\n";
+  for (const auto& array : record.arrays) {
+    text +=
+        attribute(array, h5_name + ":/" + record.group + "/" + array.name, "Cell", array.shape.size() == 4);
+  }
+  return text;
+}
+
+void write_gas_field(core::Hdf5File& file, const std::string& group, const std::string& field,
+                     const GasFields& gas) {
+  const Index3 n = gas.grid->cells();
+  const auto count = static_cast<std::size_t>(gas.grid->cell_count());
+  std::vector<std::size_t> shape{static_cast<std::size_t>(n.z), static_cast<std::size_t>(n.y),
+                                 static_cast<std::size_t>(n.x)};
+  const std::string name = group + "/" + field;
+  if (field == "velocity" || field == "pressure_gradient") {
+    shape.push_back(3);
+    const auto& values = field == "velocity" ? gas.velocity : gas.pressure_gradient;
+    file.write(name, std::span<const double>(&values.data()->x, 3 * count), shape);
+  } else if (field == "pressure") {
+    file.write(name, std::span<const double>(gas.pressure.data(), count), shape);
+  } else if (field == "void_fraction" || field == "solids_fraction") {
+    std::vector<double> values(count);
+    for (std::size_t c = 0; c < count; ++c) {
+      const Real void_fraction = gas.void_fraction_of(static_cast<Index>(c));
+      values[c] = field == "void_fraction" ? void_fraction : 1 - void_fraction;
+    }
+    file.write(name, std::span<const double>(values), shape);
+  } else {
+    throw std::logic_error("no gas field " + field);
+  }
+}
+
+}  // namespace
+
+ParticleSnapshots::ParticleSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
+                                     std::optional<std::int64_t> resume_step)
+    : fields_(std::move(fields)), series_(folder, "particles", describe_particles, resume_step) {
+  std::erase(fields_, "position");
+  fields_.insert(fields_.begin(), "position");
+}
+
+void ParticleSnapshots::write(std::int64_t step, Real time, const HostParticles& particles) {
+  series_.add(step, time, [&](core::Hdf5File& file, const std::string& group) {
+    for (const auto& field : fields_) write_particle_field(file, group, field, particles);
+  });
+}
+
+GasSnapshots::GasSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
+                           const CartesianGrid& grid, std::optional<std::int64_t> resume_step)
+    : fields_(std::move(fields)), series_(folder, "gas", describe_gas, resume_step) {
+  series_.write_once("grid", [&](core::Hdf5File& file) {
+    for (int axis = 0; axis < 3; ++axis) {
+      file.write(fmt::format("grid/{}", "xyz"[axis]), std::span<const double>(grid.faces(axis)));
+    }
+  });
+}
+
+void GasSnapshots::write(std::int64_t step, Real time, const GasFields& gas) {
+  if (fields_.empty()) return;
+  series_.add(step, time, [&](core::Hdf5File& file, const std::string& group) {
+    for (const auto& field : fields_) write_gas_field(file, group, field, gas);
+  });
+}
+
+}  // namespace pellicle::tools

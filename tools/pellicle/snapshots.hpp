@@ -1,0 +1,93 @@
+// Snapshots of all particles and of the gas: particles.h5 and gas.h5, each with an XDMF file beside it, which is what
+// ParaView opens. One group a snapshot, "step0000005000", with attributes step and time [s].
+//
+// The HDF5 file is open only while a snapshot is being added, and the XDMF file, replaced afterwards as a whole, names
+// complete snapshots only: a run can be watched while it runs, and a killed one leaves both readable.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+#include "tools/pellicle/gas_fields.hpp"
+#include "tools/pellicle/particle_quantities.hpp"
+
+namespace pellicle::core {
+class Hdf5File;
+}
+
+namespace pellicle::tools {
+
+/// What an XDMF file says of one array of a snapshot.
+struct SnapshotArray {
+  std::string name;
+  std::vector<std::size_t> shape;
+  bool integer = false;
+};
+
+struct SnapshotRecord {
+  std::string group;
+  std::int64_t step = 0;
+  Real time = 0;  ///< [s]
+  std::vector<SnapshotArray> arrays;
+};
+
+/// A time series of groups in one HDF5 file with its XDMF description: what particles and gas have in common.
+class SnapshotSeries {
+ public:
+  /// Writes one grid of the XDMF file: topology, geometry, attributes.
+  using Describe = std::function<std::string(const std::string& h5_name, const SnapshotRecord&)>;
+
+  /// Begins FOLDER/NAME.h5, or with `resume_step` goes on with it, dropping later snapshots. A file that cannot be
+  /// read any more is kept as NAME.h5.damaged, with a warning.
+  SnapshotSeries(const std::filesystem::path& folder, const std::string& name, Describe describe,
+                 std::optional<std::int64_t> resume_step);
+
+  /// Adds what does not change in time, unless it is there already.
+  void write_once(const std::string& name, const std::function<void(core::Hdf5File&)>& write);
+  /// Adds a snapshot; `write` fills the group that it is given. Replaces one of the same step.
+  void add(std::int64_t step, Real time,
+           const std::function<void(core::Hdf5File&, const std::string& group)>& write);
+
+  const std::vector<SnapshotRecord>& records() const { return records_; }
+
+ private:
+  void resume(std::int64_t step);
+  void write_xdmf() const;
+
+  std::filesystem::path h5_, xdmf_;
+  Describe describe_;
+  std::vector<SnapshotRecord> records_;
+};
+
+/// particles.h5: one row a particle, in the order of their ids; positions always, other fields as named.
+class ParticleSnapshots {
+ public:
+  /// `fields`: names from particle_snapshot_fields.
+  ParticleSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
+                    std::optional<std::int64_t> resume_step = std::nullopt);
+  void write(std::int64_t step, Real time, const HostParticles& particles);
+
+ private:
+  std::vector<std::string> fields_;
+  SnapshotSeries series_;
+};
+
+/// gas.h5: fields at cell centres, arrays nz x ny x nx (x 3), and the face coordinates of the grid.
+class GasSnapshots {
+ public:
+  /// `fields`: names from gas_snapshot_fields.
+  GasSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
+               const CartesianGrid& grid, std::optional<std::int64_t> resume_step = std::nullopt);
+  void write(std::int64_t step, Real time, const GasFields& gas);
+
+ private:
+  std::vector<std::string> fields_;
+  SnapshotSeries series_;
+};
+
+}  // namespace pellicle::tools

@@ -1,0 +1,162 @@
+#include "tools/pellicle/summary.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/error.hpp"
+#include "core/files.hpp"
+#include "core/progress.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds_of(const Summary& summary, core::Part part) {
+  return summary.wall_by_part[static_cast<std::size_t>(part)];
+}
+
+double particle_seconds(const Summary& summary) {
+  return seconds_of(summary, core::Part::contacts) + seconds_of(summary, core::Part::neighbours) +
+         seconds_of(summary, core::Part::motion);
+}
+
+}  // namespace
+
+double Summary::particle_steps_per_second() const {
+  const double seconds = particle_seconds(*this);
+  return seconds > 0 ? particle_steps / seconds : 0;
+}
+
+double Summary::wall_seconds_per_simulated_second() const {
+  return simulated_seconds > 0 ? wall_seconds / simulated_seconds : 0;
+}
+
+void Summary::set_times(const core::Timers& timers) {
+  for (std::size_t part = 0; part < wall_by_part.size(); ++part) {
+    wall_by_part[part] = timers.seconds(static_cast<core::Part>(part));
+  }
+}
+
+void Summary::set_defects(const core::Ledger& ledger) {
+  for (std::size_t q = 0; q < defects.size(); ++q)
+    defects[q] = ledger.defect(static_cast<core::Conserved>(q));
+}
+
+void write_summary(const std::filesystem::path& path, const Summary& summary) {
+  Json json;
+  json["status"] = summary.status;
+  if (!summary.message.empty()) json["message"] = summary.message;
+  json["title"] = summary.title;
+  json["program"] = {{"version", summary.program_version}, {"commit", summary.program_commit}};
+  json["simulated_seconds"] = summary.simulated_seconds;
+  json["wall_seconds"] = summary.wall_seconds;
+  json["wall_seconds_per_simulated_second"] = summary.wall_seconds_per_simulated_second();
+  for (std::size_t part = 0; part < summary.wall_by_part.size(); ++part) {
+    json["wall_by_part"][std::string(core::part_names[part])] = summary.wall_by_part[part];
+  }
+  json["threads"] = summary.threads;
+  json["gas_steps"] = summary.gas_steps;
+  json["particles"] = summary.particles;
+  json["particle_steps"] = summary.particle_steps;
+  json["particle_steps_per_second"] = summary.particle_steps_per_second();
+  json["contacts_per_particle"] = summary.contacts_per_particle;
+  json["largest_overlap"] = summary.largest_overlap;
+  json["largest_overlap_ratio"] = summary.largest_overlap_ratio;
+  json["largest_impact_speed"] = summary.largest_impact_speed;
+  json["peak_memory_bytes"] = summary.peak_memory_bytes;
+  for (std::size_t q = 0; q < summary.defects.size(); ++q) {
+    json["defects"][std::string(core::conserved_names[q])] = summary.defects[q];
+  }
+  json["instantaneous_momentum_defect"] = summary.instantaneous_momentum_defect;
+  json["lost_particles"] = summary.lost_particles;
+  json["particles_left_through_open_sides"] = summary.particles_left_through_open_sides;
+  core::write_file_atomically(path, json.dump(2) + "\n");
+}
+
+Summary read_summary(const std::filesystem::path& path) {
+  try {
+    const Json json = Json::parse(core::read_file(path));
+    Summary summary;
+    summary.status = json.at("status");
+    summary.message = json.value("message", "");
+    summary.title = json.value("title", "");
+    summary.program_version = json.at("program").at("version");
+    summary.program_commit = json.at("program").at("commit");
+    summary.simulated_seconds = json.at("simulated_seconds");
+    summary.wall_seconds = json.at("wall_seconds");
+    for (std::size_t part = 0; part < summary.wall_by_part.size(); ++part) {
+      summary.wall_by_part[part] = json.at("wall_by_part").at(std::string(core::part_names[part]));
+    }
+    summary.threads = json.at("threads");
+    summary.gas_steps = json.at("gas_steps");
+    summary.particles = json.at("particles");
+    summary.particle_steps = json.at("particle_steps");
+    summary.contacts_per_particle = json.at("contacts_per_particle");
+    summary.largest_overlap = json.at("largest_overlap");
+    summary.largest_overlap_ratio = json.at("largest_overlap_ratio");
+    summary.largest_impact_speed = json.at("largest_impact_speed");
+    summary.peak_memory_bytes = json.at("peak_memory_bytes");
+    for (std::size_t q = 0; q < summary.defects.size(); ++q) {
+      // Not-a-number is null in JSON.
+      const auto& defect = json.at("defects").at(std::string(core::conserved_names[q]));
+      summary.defects[q] = defect.is_null() ? std::numeric_limits<double>::quiet_NaN() : defect.get<double>();
+    }
+    summary.instantaneous_momentum_defect = json.value("instantaneous_momentum_defect", 0.0);
+    summary.lost_particles = json.at("lost_particles");
+    summary.particles_left_through_open_sides = json.at("particles_left_through_open_sides");
+    return summary;
+  } catch (const Json::exception& error) {
+    throw RunError(fmt::format("{}: not a summary of a run: {}", path.string(), error.what()));
+  }
+}
+
+std::string report_text(const Summary& summary) {
+  std::string text;
+  const auto line = [&](std::string_view name, const std::string& value) {
+    text += fmt::format("{:<34}{}\n", name, value);
+  };
+  line("title", summary.title);
+  line("status", summary.message.empty() ? summary.status : summary.status + ": " + summary.message);
+  line("simulated", fmt::format("{:.6g} s in {} gas steps", summary.simulated_seconds, summary.gas_steps));
+  line("wall time", fmt::format("{:.1f} s ({}), {:.4g} s per simulated second, {} threads",
+                                summary.wall_seconds, core::format_duration(summary.wall_seconds),
+                                summary.wall_seconds_per_simulated_second(), summary.threads));
+  for (std::size_t part = 0; part < summary.wall_by_part.size(); ++part) {
+    const double seconds = summary.wall_by_part[part];
+    if (seconds <= 0) continue;
+    line(fmt::format("  {}", core::part_names[part]),
+         fmt::format("{:.1f} s, {:.1f} %", seconds, 100 * seconds / std::max(summary.wall_seconds, 1e-300)));
+  }
+  line("particles", fmt::format("{}", summary.particles));
+  if (summary.particles > 0) {
+    line("particle steps per second", fmt::format("{:.4g}", summary.particle_steps_per_second()));
+    line("contacts per particle", fmt::format("{:.3f}", summary.contacts_per_particle));
+    line("largest overlap", fmt::format("{:.4g} m, {:.3f} % of the radius", summary.largest_overlap,
+                                        100 * summary.largest_overlap_ratio));
+    line("largest impact speed", fmt::format("{:.4g} m/s", summary.largest_impact_speed));
+    line("lost particles", fmt::format("{}", summary.lost_particles));
+    if (summary.particles_left_through_open_sides > 0) {
+      line("left through open sides", fmt::format("{}", summary.particles_left_through_open_sides));
+    }
+  }
+  for (std::size_t q = 0; q < summary.defects.size(); ++q) {
+    if (summary.defects[q] == 0) continue;
+    line(fmt::format("defect of {}", core::conserved_names[q]), fmt::format("{:.3g}", summary.defects[q]));
+  }
+  line("peak memory", fmt::format("{:.1f} MB", static_cast<double>(summary.peak_memory_bytes) / 1e6));
+  line("program", fmt::format("pellicle {} ({})", summary.program_version, summary.program_commit));
+  return text;
+}
+
+std::int64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{1024} * usage.ru_maxrss;
+}
+
+}  // namespace pellicle::tools

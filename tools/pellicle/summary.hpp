@@ -1,0 +1,58 @@
+// summary.json: what a run did, in numbers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/ledger.hpp"
+#include "core/timers.hpp"
+#include "core/types.hpp"
+
+namespace pellicle::tools {
+
+/// Everything that summary.json says; docs/results.md explains each entry. Written at the start (status running), at
+/// every checkpoint and at the end, so that a run that was killed leaves one too.
+struct Summary {
+  std::string status = "running";  ///< running, done, stopped, failed
+  std::string message;             ///< of a failed run
+  std::string title, program_version, program_commit;
+  double simulated_seconds = 0;
+  double wall_seconds = 0;  ///< of the time loop, over all resumes
+  std::array<double, core::part_count> wall_by_part{};
+  int threads = 0;
+  std::int64_t particles = 0;
+  double particle_steps = 0;  ///< particles x substeps, over all resumes
+  double contacts_per_particle = 0;
+  double largest_overlap = 0;        ///< [m]
+  double largest_overlap_ratio = 0;  ///< overlap / radius
+  double largest_impact_speed = 0;   ///< [m/s]
+  std::int64_t peak_memory_bytes = 0;
+  std::array<double, core::conserved_count> defects{};
+  double instantaneous_momentum_defect = 0;  ///< of the last step, before the carried part is given back
+  std::int64_t lost_particles = 0;
+  std::int64_t particles_left_through_open_sides = 0;
+  std::int64_t gas_steps = 0;
+
+  /// Particles x substeps / (contacts + neighbours + motion), all threads; 0 without particles.
+  double particle_steps_per_second() const;
+  double wall_seconds_per_simulated_second() const;
+
+  void set_times(const core::Timers& timers);
+  void set_defects(const core::Ledger& ledger);
+};
+
+/// Replaces the file; throws RunError.
+void write_summary(const std::filesystem::path& path, const Summary& summary);
+
+/// Throws RunError if it cannot be read or is no summary.
+Summary read_summary(const std::filesystem::path& path);
+
+/// The text that `pellicle report` prints: one line a fact, with units.
+std::string report_text(const Summary& summary);
+
+/// Largest resident memory of this process so far [bytes].
+std::int64_t peak_memory_bytes();
+
+}  // namespace pellicle::tools
