@@ -1,0 +1,265 @@
+#include "cfd/boundary_pieces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace pellicle::cfd {
+
+std::string_view name_of(Side side) {
+  constexpr std::array<std::string_view, 6> names{"left", "right", "front", "back", "bottom", "top"};
+  return names[static_cast<std::size_t>(side)];
+}
+
+namespace {
+
+struct Rectangle {
+  std::array<Real, 2> min, max;
+  Real area() const { return std::max(max[0] - min[0], 0.0) * std::max(max[1] - min[1], 0.0); }
+};
+
+Rectangle intersect(const Rectangle& a, const Rectangle& b) {
+  return {{std::max(a.min[0], b.min[0]), std::max(a.min[1], b.min[1])},
+          {std::min(a.max[0], b.max[0]), std::min(a.max[1], b.max[1])}};
+}
+
+// The two axes that span a side, the faster-running first.
+std::array<int, 2> plane_axes(int axis) {
+  return axis == 0 ? std::array<int, 2>{1, 2}
+                   : (axis == 1 ? std::array<int, 2>{0, 2} : std::array<int, 2>{0, 1});
+}
+
+[[noreturn]] void refuse(const BoundaryPatch& patch, const std::string& what) {
+  throw InputError(fmt::format("{}: boundary '{}' {}", patch.where, patch.name, what));
+}
+
+void check_values(const BoundaryPatch& patch) {
+  if (const auto* inlet = std::get_if<Inlet>(&patch.kind)) {
+    if (inlet->velocity.has_value() == inlet->flow_rate.has_value()) {
+      refuse(patch, "is an inlet; allowed: exactly one of velocity and flow_rate");
+    }
+    if (!std::isfinite(inlet->velocity.value_or(0)) || !std::isfinite(inlet->flow_rate.value_or(0))) {
+      refuse(patch, "has an inflow that is no finite number; allowed: a number");
+    }
+  }
+  if (const auto* wall = std::get_if<NoSlip>(&patch.kind)) {
+    if (!std::isfinite(norm(wall->velocity))) refuse(patch, "has a velocity that is no finite number");
+    if (wall->velocity[axis_of(patch.on)] != 0) {
+      refuse(patch, "moves at right angles to itself; allowed: a velocity in the plane of the wall");
+    }
+  }
+}
+
+// Cuts one side and adds its pieces.
+class SideCutter {
+ public:
+  SideCutter(const FlowGeometry& geometry, const std::vector<BoundaryPatch>& patches, Side side)
+      : geometry_(geometry),
+        patches_(patches),
+        side_(side),
+        axis_(axis_of(side)),
+        across_(plane_axes(axis_)) {
+    const Box& box = geometry.grid.box();
+    for (std::size_t d = 0; d < 2; ++d)
+      whole_.min[d] = box.min[across_[d]], whole_.max[d] = box.max[across_[d]];
+    collect_regions();
+    check_overlaps();
+  }
+
+  void cut(Boundaries& result) const {
+    const CartesianGrid& grid = geometry_.grid;
+    const Index3 n = geometry_.stencil.n;
+    const Index along = is_max(side_) ? n[axis_] - 1 : 0;
+    std::vector<Real> covered(patches_.size(), 0);
+    for (Index b = 0; b < n[across_[1]]; ++b) {
+      for (Index a = 0; a < n[across_[0]]; ++a) {
+        Index3 at{0, 0, 0};
+        at[axis_] = along;
+        at[across_[0]] = a;
+        at[across_[1]] = b;
+        const auto corner = [&](int d, Index i) {
+          return grid.faces(across_[static_cast<std::size_t>(d)])[static_cast<std::size_t>(i)];
+        };
+        const Rectangle face{{corner(0, a), corner(1, b)}, {corner(0, a + 1), corner(1, b + 1)}};
+        Real left = face.area();
+        for (const auto& [patch, region] : regions_) {
+          const Real area = intersect(face, region).area();
+          if (area <= 1e-12 * face.area()) continue;
+          add(result, at, patch, area);
+          covered[static_cast<std::size_t>(patch)] += area;
+          left -= area;
+        }
+        if (left > 1e-12 * face.area()) {
+          add(result, at, rest_, left);
+          if (rest_ >= 0) covered[static_cast<std::size_t>(rest_)] += left;
+        }
+      }
+    }
+    check_covered(covered);
+  }
+
+ private:
+  void collect_regions() {
+    const Box& box = geometry_.grid.box();
+    const Real plane = is_max(side_) ? box.max[axis_] : box.min[axis_];
+    const Real slack = 1e-9 * (box.max[axis_] - box.min[axis_]);
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      const BoundaryPatch& patch = patches_[p];
+      if (patch.on != side_) continue;
+      if (!patch.region) {
+        if (rest_ >= 0) {
+          refuse(patch,
+                 fmt::format("takes the rest of the {} side, as '{}' does; allowed: one boundary a side "
+                             "without region",
+                             name_of(side_), patches_[static_cast<std::size_t>(rest_)].name));
+        }
+        rest_ = static_cast<int>(p);
+        continue;
+      }
+      Rectangle region{{patch.region->min[across_[0]], patch.region->min[across_[1]]},
+                       {patch.region->max[across_[0]], patch.region->max[across_[1]]}};
+      region = intersect(region, whole_);
+      const bool reaches =
+          patch.region->min[axis_] <= plane + slack && patch.region->max[axis_] >= plane - slack;
+      if (!reaches || region.area() <= 0) {
+        refuse(patch,
+               fmt::format("has a region that covers no face of the {} side; allowed: a box that reaches it",
+                           name_of(side_)));
+      }
+      regions_.emplace_back(static_cast<int>(p), region);
+    }
+  }
+
+  void check_overlaps() const {
+    for (std::size_t a = 0; a < regions_.size(); ++a) {
+      for (std::size_t b = a + 1; b < regions_.size(); ++b) {
+        if (intersect(regions_[a].second, regions_[b].second).area() <= 1e-9 * whole_.area()) continue;
+        refuse(patches_[static_cast<std::size_t>(regions_[b].first)],
+               fmt::format("overlaps boundary '{}' on the {} side; allowed: regions apart from each other",
+                           patches_[static_cast<std::size_t>(regions_[a].first)].name, name_of(side_)));
+      }
+    }
+  }
+
+  void check_covered(const std::vector<Real>& covered) const {
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      if (patches_[p].on == side_ && covered[p] <= 0) {
+        refuse(patches_[p],
+               fmt::format("covers no face of the {} side; allowed: a part that no other boundary takes",
+                           name_of(side_)));
+      }
+    }
+  }
+
+  void add(Boundaries& result, const Index3& at, int patch, Real area) const {
+    const Stencil& s = geometry_.stencil;
+    BoundaryPiece piece;
+    piece.patch = patch;
+    piece.axis = axis_;
+    piece.outward = is_max(side_) ? 1 : -1;
+    piece.cell = s.cell(at.x, at.y, at.z);
+    piece.face = s.face(axis_, at.x, at.y, at.z) + (is_max(side_) ? s.face_step(axis_) : 0);
+    piece.place = s.plane_index(axis_, at.x, at.y, at.z);
+    piece.area = area;
+    piece.half_width = 0.5 * geometry_.grid.width(axis_, at[axis_]);
+    if (patch >= 0) {
+      const auto& kind = patches_[static_cast<std::size_t>(patch)].kind;
+      if (std::holds_alternative<Inlet>(kind)) piece.kind = PieceKind::inlet;
+      if (std::holds_alternative<Outlet>(kind)) piece.kind = PieceKind::outlet;
+      if (std::holds_alternative<FreeSlip>(kind) || std::holds_alternative<Symmetry>(kind)) {
+        piece.kind = PieceKind::slip;
+      }
+      if (const auto* wall = std::get_if<NoSlip>(&kind)) piece.velocity = wall->velocity;
+      if (const auto* outlet = std::get_if<Outlet>(&kind)) piece.pressure = outlet->pressure;
+    }
+    result.pieces.push_back(piece);
+  }
+
+  const FlowGeometry& geometry_;
+  const std::vector<BoundaryPatch>& patches_;
+  Side side_;
+  int axis_;
+  std::array<int, 2> across_;
+  Rectangle whole_{};
+  std::vector<std::pair<int, Rectangle>> regions_;
+  int rest_ = -1;
+};
+
+// A flow rate becomes a velocity over the area that the inlet was found to have.
+void set_inlet_velocities(Boundaries& result, const std::vector<BoundaryPatch>& patches) {
+  std::vector<Real> area(patches.size(), 0);
+  for (const BoundaryPiece& piece : result.pieces) {
+    if (piece.patch >= 0) area[static_cast<std::size_t>(piece.patch)] += piece.area;
+  }
+  Real net_inflow = 0;
+  Real gross = 0;
+  const BoundaryPatch* an_inlet = nullptr;
+  for (BoundaryPiece& piece : result.pieces) {
+    result.has_outlet = result.has_outlet || piece.kind == PieceKind::outlet;
+    if (piece.kind != PieceKind::inlet) continue;
+    const auto p = static_cast<std::size_t>(piece.patch);
+    const auto& inlet = std::get<Inlet>(patches[p].kind);
+    const Real inward = inlet.velocity ? *inlet.velocity : *inlet.flow_rate / area[p];
+    piece.velocity[piece.axis] = -piece.outward * inward;
+    net_inflow += inward * piece.area;
+    gross += std::abs(inward) * piece.area;
+    if (!an_inlet) an_inlet = &patches[p];
+  }
+  if (!result.has_outlet && std::abs(net_inflow) > 1e-12 * gross) {
+    refuse(*an_inlet, fmt::format("lets {:.6g} m3/s of gas in, which has no way out; allowed: add an outlet",
+                                  net_inflow));
+  }
+}
+
+void set_boundary_values(Boundaries& result, const FlowGeometry& geometry) {
+  const Stencil& s = geometry.stencil;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (s.periodic[static_cast<std::size_t>(axis)]) continue;
+    for (int side = 0; side < 2; ++side) {
+      result.values[static_cast<std::size_t>(2 * axis + side)].resize(
+          static_cast<std::size_t>(s.plane_size(axis)));
+    }
+  }
+  for (const BoundaryPiece& piece : result.pieces) {
+    const auto side = static_cast<std::size_t>(2 * piece.axis + (piece.outward > 0 ? 1 : 0));
+    BoundaryValue& value = result.values[side][static_cast<std::size_t>(piece.place)];
+    const Real share = piece.area / geometry.area[static_cast<std::size_t>(piece.axis)](piece.face);
+    for (int a = 0; a < 3; ++a) {
+      const bool normal = a == piece.axis;
+      const bool free = piece.kind == PieceKind::outlet || (piece.kind == PieceKind::slip && !normal);
+      if (free) {
+        value.free[a] += share;
+      } else {
+        value.fixed[a] += share * piece.velocity[a];
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Boundaries cut_boundaries(const FlowGeometry& geometry, const std::vector<BoundaryPatch>& patches) {
+  Boundaries result;
+  for (const BoundaryPatch& patch : patches) {
+    check_values(patch);
+    if (geometry.stencil.periodic[static_cast<std::size_t>(axis_of(patch.on))]) {
+      refuse(patch,
+             fmt::format("is on the {} side, where the domain is periodic; allowed: sides that are not",
+                         name_of(patch.on)));
+    }
+    result.patch_names.push_back(patch.name);
+  }
+  for (const Side side : {Side::x_min, Side::x_max, Side::y_min, Side::y_max, Side::z_min, Side::z_max}) {
+    if (geometry.stencil.periodic[static_cast<std::size_t>(axis_of(side))]) continue;
+    SideCutter(geometry, patches, side).cut(result);
+  }
+  set_inlet_velocities(result, patches);
+  set_boundary_values(result, geometry);
+  return result;
+}
+
+}  // namespace pellicle::cfd

@@ -1,0 +1,47 @@
+// The boundaries cut into pieces: each piece is the part of one cell's boundary face that one patch takes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cfd/boundary.hpp"
+#include "cfd/flow_geometry.hpp"
+
+namespace pellicle::cfd {
+
+enum class PieceKind { inlet, outlet, no_slip, slip };
+
+struct BoundaryPiece {
+  PieceKind kind = PieceKind::no_slip;
+  int patch = -1;  ///< index of the patch; -1: a side without a patch, a wall at rest
+  int axis = 0;
+  Real outward = 1;  ///< +1 on a max side, -1 on a min side
+  Index cell = 0;
+  Index face = 0;
+  Index place = 0;      ///< on the plane, see Stencil::plane_index
+  Real area = 0;        ///< [m2]
+  Real half_width = 0;  ///< from the cell centre to the face [m]
+  Vec3 velocity;        ///< of a wall, or superficial of an inlet [m/s]
+  Real pressure = 0;    ///< at an outlet [Pa]
+};
+
+/// Values that convection and gradients see at a boundary face: fixed + free * value in the cell.
+struct BoundaryValue {
+  Vec3 fixed;
+  Vec3 free;
+};
+
+struct Boundaries {
+  std::vector<BoundaryPiece> pieces;  ///< side by side, in the order of faces
+  /// Per side (min, max of each axis) and place on its plane; empty for periodic sides.
+  std::array<std::vector<BoundaryValue>, 6> values;
+  std::vector<std::string> patch_names;
+  bool has_outlet = false;
+};
+
+/// Cuts the sides of the grid along the patches' regions. Each face's pieces add up to its area exactly up to
+/// round-off, so that an inlet whose edge cuts a face delivers the flow asked for.
+/// Throws InputError as GasSolver says.
+Boundaries cut_boundaries(const FlowGeometry& geometry, const std::vector<BoundaryPatch>& patches);
+
+}  // namespace pellicle::cfd

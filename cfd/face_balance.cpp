@@ -1,0 +1,306 @@
+#include "cfd/face_balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellicle::cfd {
+
+FaceBalance::FaceBalance(const FlowGeometry& geometry, const Boundaries& boundaries,
+                         const GasOptions& options)
+    : geometry_(geometry),
+      boundaries_(boundaries),
+      options_(options),
+      void_fraction_(make_face_field(geometry.stencil, "cfd::face_balance::void_fraction")),
+      void_fraction_old_(make_face_field(geometry.stencil, "cfd::face_balance::void_fraction_old")),
+      resistance_(make_face_field(geometry.stencil, "cfd::face_balance::resistance")),
+      force_(make_face_field(geometry.stencil, "cfd::face_balance::force")),
+      kinetic_(make_face_field(geometry.stencil, "cfd::face_balance::kinetic")),
+      mobility_(make_face_field(geometry.stencil, "cfd::face_balance::mobility")),
+      inertial_(make_face_field(geometry.stencil, "cfd::face_balance::inertial")),
+      jump_(make_face_field(geometry.stencil, "cfd::face_balance::jump")),
+      outlet_mobility_(boundaries.pieces.size(), 0) {}
+
+void FaceBalance::prepare(const GasFields& fields) {
+  const char* labels[] = {"cfd::face_balance::prepare_x", "cfd::face_balance::prepare_y",
+                          "cfd::face_balance::prepare_z"};
+  const Real* eps = fields.void_fraction.data();
+  const Real* eps_old = fields.void_fraction_old.data();
+  const Real* beta = fields.exchange_coefficient.data();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Real* force = fields.force.data() + axis * fields.cells;
+    const Real body = options_.body_force[axis];
+    for_faces(labels[a], geometry_.stencil, axis, [&](Index f, Index m, Index p, Index position, Index) {
+      const Real wm = geometry_.axis[a].series_minus[static_cast<std::size_t>(position)];
+      const Real wp = 1 - wm;
+      void_fraction_[a](f) = 1 / (wm / eps[m] + wp / eps[p]);
+      void_fraction_old_[a](f) = 1 / (wm / eps_old[m] + wp / eps_old[p]);
+      const Real inverse_m = 1 / (eps[m] * eps[m]);
+      const Real inverse_p = 1 / (eps[p] * eps[p]);
+      resistance_[a](f) = wm * beta[m] * inverse_m + wp * beta[p] * inverse_p;
+      force_[a](f) = wm * force[m] / eps[m] + wp * force[p] / eps[p] + body;
+      kinetic_[a](f) = inverse_p - inverse_m;
+    });
+  }
+}
+
+// Pressure step from the minus to the plus side: -1/2 rho Delta(u^2), with the superficial velocity the same on both.
+Real FaceBalance::pressure_jump(const GasFields& fields, const MomentumEquation& momentum, int axis,
+                                Index f) const {
+  const auto a = static_cast<std::size_t>(axis);
+  return -0.5 * options_.density * fields.superficial[a](f) * momentum.convection().normal_value[a](f) *
+         kinetic_[a](f);
+}
+
+void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
+                          const HostArray<Real>& relaxation, Real dt, PressureMatrix& matrix) {
+  const char* labels[] = {"cfd::face_balance::predict_x", "cfd::face_balance::predict_y",
+                          "cfd::face_balance::predict_z"};
+  const Index cells = fields.cells;
+  const Real* eps = fields.void_fraction.data();
+  const Real* pressure = fields.pressure.data();
+  const Real* volume = geometry_.volume.data();
+  const Real rho = options_.density;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const AxisMetrics& metrics = geometry_.axis[a];
+    const Real* own = momentum.own().data() + axis * cells;
+    const Real* in = influx.data() + axis * cells;
+    const Real* relax = relaxation.data() + axis * cells;
+    const Real* normal_value = momentum.convection().normal_value[a].data();
+    Real* velocity = fields.superficial[a].data();
+    const Real* velocity_old = fields.superficial_old[a].data();
+    for_faces(labels[a], geometry_.stencil, axis, [&](Index f, Index m, Index p, Index position, Index) {
+      const auto at = static_cast<std::size_t>(position);
+      const Real wm = metrics.linear_minus[at];
+      const Real wp = 1 - wm;
+      const Real distance = metrics.distance[at];
+      const Real eps_f = void_fraction_[a](f);
+      const Real scale_m = wm / (volume[m] * eps[m]);
+      const Real scale_p = wp / (volume[p] * eps[p]);
+      const Real transport = scale_m * own[m] + scale_p * own[p];
+      const Real relaxed = scale_m * relax[m] + scale_p * relax[p];
+      const Real inflow = wm * in[m] / volume[m] + wp * in[p] / volume[p];
+      const Real transient = rho * void_fraction_old_[a](f) / (dt * eps_f);
+      // The convective pressure step: implicit where it slows the face down, explicit where it speeds it up.
+      const Real kinetic = 0.5 * rho * normal_value[f] * kinetic_[a](f) * eps_f / distance;
+      const Real braking = std::max(kinetic, Real{0});
+      const Real speeding = std::max(-kinetic, Real{0});
+      const Real stiffness = transient + eps_f * resistance_[a](f) + relaxed + braking;
+      const Real pull = inflow + rho * velocity_old[f] / dt + (relaxed + speeding) * velocity[f] +
+                        eps_f * ((pressure[m] - pressure[p]) / distance + force_[a](f));
+      velocity[f] = pull / (stiffness + transport);
+      mobility_[a](f) = eps_f / (stiffness * distance);
+      matrix.coefficient[a](f) = geometry_.area[a](f) * mobility_[a](f);
+    });
+    copy_periodic_faces(geometry_.stencil, axis, fields.superficial[a]);
+    copy_periodic_faces(geometry_.stencil, axis, mobility_[a]);
+    copy_periodic_faces(geometry_.stencil, axis, matrix.coefficient[a]);
+  }
+  predict_outlets(fields, momentum, influx, relaxation, dt, matrix);
+  set_boundary_velocities(geometry_, boundaries_, fields);
+  matrix.finish();
+}
+
+// Static pressure just inside the outlet. Gas that comes back in starts from rest at the outlet's pressure.
+Real FaceBalance::outlet_pressure(const GasFields& fields, std::size_t b) const {
+  const BoundaryPiece& piece = boundaries_.pieces[b];
+  const Real inside =
+      std::min(fields.piece_flow[b], Real{0}) / (piece.area * fields.void_fraction(piece.cell));
+  return piece.pressure - 0.5 * options_.density * inside * inside;
+}
+
+void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& momentum,
+                                  const HostArray<Real>& influx, const HostArray<Real>& relaxation, Real dt,
+                                  PressureMatrix& matrix) {
+  const Real rho = options_.density;
+  for (std::size_t a = 0; a < 3; ++a) Kokkos::deep_copy(matrix.boundary[a], 0.0);
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    if (piece.kind != PieceKind::outlet) continue;
+    const Index c = piece.cell;
+    const Index e = c + piece.axis * fields.cells;
+    const Real eps = fields.void_fraction(c);
+    const Real volume = geometry_.volume(c);
+    const Real speed = fields.piece_flow[b] / piece.area;
+    const Real transport = momentum.own()(e) / (volume * eps);
+    const Real relaxed = relaxation(e) / (volume * eps);
+    const Real braking = 0.5 * rho * std::max(-speed, Real{0}) / (eps * piece.half_width);
+    const Real stiffness = rho * fields.void_fraction_old(c) / (dt * eps) +
+                           fields.exchange_coefficient(c) / eps + relaxed + braking;
+    const Real outward_force = piece.outward * (fields.force(e) / eps + options_.body_force[piece.axis]);
+    const Real pull = piece.outward * influx(e) / volume +
+                      rho * fields.piece_flow_old[b] / (piece.area * dt) + relaxed * speed +
+                      eps * ((fields.pressure(c) - piece.pressure) / piece.half_width + outward_force);
+    outlet_mobility_[b] = eps / (stiffness * piece.half_width);
+    fields.piece_flow[b] = piece.area * pull / (stiffness + transport);
+    matrix.boundary[static_cast<std::size_t>(piece.axis)](c) += piece.area * outlet_mobility_[b];
+  }
+}
+
+void set_boundary_velocities(const FlowGeometry& geometry, const Boundaries& boundaries,
+                             const GasFields& fields) {
+  for (const BoundaryPiece& piece : boundaries.pieces) {
+    fields.superficial[static_cast<std::size_t>(piece.axis)](piece.face) = 0;
+  }
+  for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries.pieces[b];
+    const auto a = static_cast<std::size_t>(piece.axis);
+    fields.superficial[a](piece.face) += piece.outward * fields.piece_flow[b] / geometry.area[a](piece.face);
+  }
+}
+
+void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) {
+  const char* labels[] = {"cfd::face_balance::correct_x", "cfd::face_balance::correct_y",
+                          "cfd::face_balance::correct_z"};
+  const char* cell_labels[] = {"cfd::face_balance::correct_cells_x", "cfd::face_balance::correct_cells_y",
+                               "cfd::face_balance::correct_cells_z"};
+  const Stencil& s = geometry_.stencil;
+  const Real* change = correction.data();
+  // The change of each face's velocity goes where its inertial force will be computed anew.
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    inertial_[static_cast<std::size_t>(piece.axis)](piece.face) = 0;
+  }
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    if (piece.kind != PieceKind::outlet) continue;
+    const auto a = static_cast<std::size_t>(piece.axis);
+    const Real flow = piece.area * outlet_mobility_[b] * change[piece.cell];
+    fields.piece_flow[b] += flow;
+    inertial_[a](piece.face) += piece.outward * flow / geometry_.area[a](piece.face);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    for_faces(labels[a], s, axis, [&](Index f, Index m, Index p, Index, Index) {
+      const Real delta = mobility_[a](f) * (change[m] - change[p]);
+      inertial_[a](f) = delta;
+      fields.superficial[a](f) += delta;
+    });
+    copy_periodic_faces(s, axis, fields.superficial[a]);
+    copy_periodic_faces(s, axis, inertial_[a]);
+    const Index step = s.face_step(axis);
+    for_rows(cell_labels[a], s, [&](const Index r) {
+      const Row row = s.row(r);
+      const Index first = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
+      const Real* delta = inertial_[a].data() + first;
+      const Real* eps = fields.void_fraction.data() + row.cell;
+      Real* u = fields.velocity.data() + axis * fields.cells + row.cell;
+      for (Index i = 0; i < s.n.x; ++i) u[i] += 0.5 * (delta[i] + delta[i + step]) / eps[i];
+    });
+  }
+  for_entries("cfd::face_balance::correct_pressure", fields.cells,
+              [&](Index c) { fields.pressure(c) += change[c]; });
+  set_boundary_velocities(geometry_, boundaries_, fields);
+}
+
+// Walls and inlets: the inertial force of the cell's other face, so that the pressure goes on linearly.
+void FaceBalance::set_boundary_inertia(const GasFields& fields) {
+  const Stencil& s = geometry_.stencil;
+  for (const BoundaryPiece& piece : boundaries_.pieces) {
+    const auto a = static_cast<std::size_t>(piece.axis);
+    const Index other = piece.face - static_cast<Index>(piece.outward) * s.face_step(piece.axis);
+    inertial_[a](piece.face) = s.n[piece.axis] > 1 ? inertial_[a](other) : 0;
+  }
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    if (piece.kind != PieceKind::outlet) continue;
+    const auto a = static_cast<std::size_t>(piece.axis);
+    const Index c = piece.cell;
+    const Real eps = fields.void_fraction(c);
+    const Real share = piece.area / geometry_.area[a](piece.face);
+    const Real gradient = (outlet_pressure(fields, b) - fields.pressure(c)) / piece.half_width;
+    const Real outward = eps * (piece.outward * options_.body_force[piece.axis] - gradient) +
+                         piece.outward * fields.force(c + piece.axis * fields.cells) -
+                         fields.exchange_coefficient(c) / eps * fields.piece_flow[b] / piece.area;
+    const Index other = piece.face - static_cast<Index>(piece.outward) * s.face_step(piece.axis);
+    const Real base = s.n[piece.axis] > 1 ? inertial_[a](other) : 0;
+    inertial_[a](piece.face) += share * (piece.outward * outward - base);
+  }
+}
+
+void FaceBalance::compute_cell_force(const GasFields& fields, const MomentumEquation& momentum,
+                                     const HostArray<Real>& force) {
+  const char* labels[] = {"cfd::face_balance::inertial_x", "cfd::face_balance::inertial_y",
+                          "cfd::face_balance::inertial_z"};
+  const char* cell_labels[] = {"cfd::face_balance::cell_force_x", "cfd::face_balance::cell_force_y",
+                               "cfd::face_balance::cell_force_z"};
+  const Stencil& s = geometry_.stencil;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const AxisMetrics& metrics = geometry_.axis[a];
+    for_faces(labels[a], s, axis, [&](Index f, Index m, Index p, Index position, Index) {
+      const Real distance = metrics.distance[static_cast<std::size_t>(position)];
+      jump_[a](f) = pressure_jump(fields, momentum, axis, f);
+      inertial_[a](f) =
+          void_fraction_[a](f) * ((fields.pressure(m) - fields.pressure(p) + jump_[a](f)) / distance +
+                                  force_[a](f) - resistance_[a](f) * fields.superficial[a](f));
+    });
+    copy_periodic_faces(s, axis, jump_[a]);
+    copy_periodic_faces(s, axis, inertial_[a]);
+  }
+  set_boundary_inertia(fields);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Index step = s.face_step(axis);
+    for_rows(cell_labels[a], s, [&](const Index r) {
+      const Row row = s.row(r);
+      const Index first = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
+      const Real* inertial = inertial_[a].data() + first;
+      const Real* velocity = fields.superficial[a].data() + first;
+      const Real* eps = fields.void_fraction.data() + row.cell;
+      const Real* beta = fields.exchange_coefficient.data() + row.cell;
+      const Real* volume = geometry_.volume.data() + row.cell;
+      Real* out = force.data() + axis * fields.cells + row.cell;
+      for (Index i = 0; i < s.n.x; ++i) {
+        out[i] = 0.5 * volume[i] *
+                 ((inertial[i] + inertial[i + step]) + beta[i] / eps[i] * (velocity[i] + velocity[i + step]));
+      }
+    });
+  }
+}
+
+// Gradient in the half of a cell that ends at a face: inertia, drag and force of the gas there hold it up.
+Real FaceBalance::side_gradient(const GasFields& fields, Index c, int axis, Index f) const {
+  const auto a = static_cast<std::size_t>(axis);
+  const Real eps = fields.void_fraction(c);
+  return options_.body_force[axis] + (fields.force(c + axis * fields.cells) - inertial_[a](f) -
+                                      fields.exchange_coefficient(c) / eps * fields.superficial[a](f)) /
+                                         eps;
+}
+
+void FaceBalance::compute_pressure_gradient(const GasFields& fields, const HostArray<Vec3>& gradient) const {
+  const Stencil& s = geometry_.stencil;
+  for_rows("cfd::face_balance::pressure_gradient", s, [&](const Index r) {
+    const Row row = s.row(r);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const Index step = s.face_step(axis);
+      const Index first = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
+      const Index minus_row = axis == 1 ? row.y_minus : (axis == 2 ? row.z_minus : row.cell);
+      const Index plus_row = axis == 1 ? row.y_plus : (axis == 2 ? row.z_plus : row.cell);
+      const Real* eps = fields.void_fraction.data();
+      along_row(row, s.n.x, [&](Index i, Index left, Index right) {
+        const Index c = row.cell + i;
+        const Real eps_minus = eps[minus_row + (axis == 0 ? left : i)];
+        const Real eps_plus = eps[plus_row + (axis == 0 ? right : i)];
+        const Index along = axis == 0 ? i : (axis == 1 ? row.j : row.k);
+        // The step of the convective acceleration is shared so that the gas loses what its momentum flux, the mean of
+        // both sides', gains: eps_P J eps_N / (eps_P + eps_N) on each side.
+        const Real jumps = jump_[a](first + i) * eps_minus / (eps[c] + eps_minus) +
+                           jump_[a](first + i + step) * eps_plus / (eps[c] + eps_plus);
+        gradient(c)[axis] = 0.5 * (side_gradient(fields, c, axis, first + i) +
+                                   side_gradient(fields, c, axis, first + i + step)) +
+                            jumps / geometry_.axis[a].width[static_cast<std::size_t>(along)];
+      });
+    }
+  });
+}
+
+Real FaceBalance::boundary_pressure(const GasFields& fields, std::size_t b) const {
+  const BoundaryPiece& piece = boundaries_.pieces[b];
+  return fields.pressure(piece.cell) +
+         piece.outward * piece.half_width * side_gradient(fields, piece.cell, piece.axis, piece.face);
+}
+
+}  // namespace pellicle::cfd

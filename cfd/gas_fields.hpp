@@ -1,0 +1,26 @@
+// The working set of one gas step. Velocity components lie one after the other: entry of cell c and axis a is
+// c + a * cells.
+#pragma once
+
+#include <vector>
+
+#include "cfd/flow_geometry.hpp"
+#include "cfd/gas_state.hpp"
+
+namespace pellicle::cfd {
+
+struct GasFields {
+  explicit GasFields(const FlowGeometry& geometry, std::size_t piece_count);
+
+  Index cells = 0;
+  HostArray<Real> velocity, velocity_old;  ///< 3 cells [m/s]
+  HostArray<Real> pressure;                ///< [Pa]
+  HostArray<Real> void_fraction, void_fraction_old;
+  HostArray<Real> exchange_coefficient;    ///< beta [kg/m3/s]
+  HostArray<Real> force;                   ///< explicit force on the gas, 3 cells [N/m3]
+  FaceField superficial, superficial_old;  ///< face velocity [m/s]
+  FaceField mass_flux;  ///< rho volume flux of faces with two cells; 0 on boundary faces [kg/s]
+  std::vector<Real> piece_flow, piece_flow_old;  ///< outward volume flow of each boundary piece [m3/s]
+};
+
+}  // namespace pellicle::cfd

@@ -1,0 +1,479 @@
+#include "cfd/gas_solver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "cfd/gas_solver_impl.hpp"
+#include "core/error.hpp"
+
+namespace pellicle::cfd {
+
+namespace {
+
+HostArray<Real> make_array(const char* label, Index size) {
+  return HostArray<Real>(std::string(label), static_cast<std::size_t>(size));
+}
+
+void check_options(const GasOptions& o) {
+  const auto refuse = [](const char* what) { throw InputError(fmt::format("gas: {}", what)); };
+  if (!(o.density > 0)) refuse("density is not positive; allowed: > 0 kg/m3");
+  if (!(o.viscosity >= 0)) refuse("viscosity is negative; allowed: >= 0 Pa s");
+  if (!(o.solver.velocity_relaxation > 0 && o.solver.velocity_relaxation <= 1)) {
+    refuse("solver.velocity_relaxation is out of range; allowed: > 0 and <= 1");
+  }
+  if (o.solver.max_outer_iterations < 1) refuse("solver.max_outer_iterations is too small; allowed: >= 1");
+}
+
+}  // namespace
+
+ParticleExchange make_empty_exchange(const CartesianGrid& grid) {
+  const auto n = static_cast<std::size_t>(grid.cell_count());
+  ParticleExchange exchange{HostArray<Real>("cfd::exchange::void_fraction", n),
+                            HostArray<Real>("cfd::exchange::exchange_coefficient", n),
+                            HostArray<Vec3>("cfd::exchange::explicit_force", n)};
+  Kokkos::deep_copy(exchange.void_fraction, 1.0);
+  return exchange;
+}
+
+GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
+                      std::vector<BoundaryPatch> boundary_patches)
+    : geometry(grid),
+      options(gas_options),
+      patches(std::move(boundary_patches)),
+      boundaries(cut_boundaries(geometry, patches)),
+      fields(geometry, boundaries.pieces.size()),
+      momentum(geometry, boundaries, options),
+      faces(geometry, boundaries, options),
+      pressure_matrix(geometry.stencil),
+      pressure_solver(geometry, options.solver.pressure_solver) {
+  check_options(options);
+  const Index n = fields.cells;
+  pressure_matrix.singular = !boundaries.has_outlet;
+  influx = make_array("cfd::gas_solver::influx", 3 * n);
+  inertia = make_array("cfd::gas_solver::inertia", 3 * n);
+  relaxation = make_array("cfd::gas_solver::relaxation", 3 * n);
+  cell_force = make_array("cfd::gas_solver::cell_force", 3 * n);
+  rhs = make_array("cfd::gas_solver::rhs", n);
+  correction = make_array("cfd::gas_solver::correction", n);
+  before = make_face_field(geometry.stencil, "cfd::gas_solver::before");
+  state.velocity = HostArray<Vec3>("cfd::gas_solver::velocity", static_cast<std::size_t>(n));
+  state.pressure_gradient =
+      HostArray<Vec3>("cfd::gas_solver::pressure_gradient", static_cast<std::size_t>(n));
+  state.volume_flux = make_face_field(geometry.stencil, "cfd::gas_solver::volume_flux");
+  state.pressure = fields.pressure;
+  state.void_fraction = fields.void_fraction;
+  state.void_fraction_old = fields.void_fraction_old;
+  state.superficial_velocity = fields.superficial;
+  for (const std::string& name : boundaries.patch_names) balance.patches.push_back({name, 0, 0});
+}
+
+void GasSolver::Impl::initialise(const HostArray<Real>& void_fraction) {
+  const Index n = fields.cells;
+  Kokkos::deep_copy(fields.void_fraction, void_fraction);
+  Kokkos::deep_copy(fields.void_fraction_old, void_fraction);
+  Kokkos::deep_copy(fields.pressure, 0.0);
+  Kokkos::deep_copy(state.pressure_gradient, Vec3{});
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Real* u = fields.velocity.data() + axis * n;
+    for_faces("cfd::gas_solver::initial_faces", geometry.stencil, axis,
+              [&](Index f, Index m, Index p, Index position, Index) {
+                const Real wm = geometry.axis[a].series_minus[static_cast<std::size_t>(position)];
+                const Real wl = geometry.axis[a].linear_minus[static_cast<std::size_t>(position)];
+                const Real eps = 1 / (wm / void_fraction(m) + (1 - wm) / void_fraction(p));
+                fields.superficial[a](f) = eps * (wl * u[m] + (1 - wl) * u[p]);
+              });
+    copy_periodic_faces(geometry.stencil, axis, fields.superficial[a]);
+  }
+  for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries.pieces[b];
+    Real speed = 0;
+    if (piece.kind == PieceKind::inlet) speed = piece.velocity[piece.axis];
+    if (piece.kind == PieceKind::outlet) {
+      speed = void_fraction(piece.cell) * fields.velocity(piece.cell + piece.axis * n);
+    }
+    fields.piece_flow[b] = piece.outward * speed * piece.area;
+  }
+  set_boundary_velocities(geometry, boundaries, fields);
+  update_mass_flux();
+  copy_velocity_to_state();
+  state.time = 0;
+  balance = GasBalance{};
+  for (const std::string& name : boundaries.patch_names) balance.patches.push_back({name, 0, 0});
+  update_stocks();
+  balance.mass_initial = balance.mass;
+  balance.momentum_initial = balance.momentum;
+}
+
+void GasSolver::Impl::take_exchange(const ParticleExchange& exchange, Real dt) {
+  const Index n = fields.cells;
+  const auto size = static_cast<std::size_t>(n);
+  if (exchange.void_fraction.extent(0) != size || exchange.exchange_coefficient.extent(0) != size ||
+      exchange.explicit_force.extent(0) != size) {
+    throw std::invalid_argument("the exchange fields have another size than the gas grid");
+  }
+  if (!(dt > 0)) throw std::invalid_argument("the gas step is not positive");
+  Kokkos::deep_copy(fields.velocity_old, fields.velocity);
+  Kokkos::deep_copy(fields.void_fraction_old, fields.void_fraction);
+  for (std::size_t a = 0; a < 3; ++a) Kokkos::deep_copy(fields.superficial_old[a], fields.superficial[a]);
+  fields.piece_flow_old = fields.piece_flow;
+  for (Index c = 0; c < n; ++c) {
+    const Real eps = exchange.void_fraction(c);
+    const Real beta = exchange.exchange_coefficient(c);
+    if (!(eps > 0 && eps <= 1 + 1e-9)) fail(fmt::format("the void fraction is {}", eps), c);
+    if (!(beta >= 0 && std::isfinite(beta)))
+      fail(fmt::format("the momentum exchange coefficient is {}", beta), c);
+    fields.void_fraction(c) = eps;
+    fields.exchange_coefficient(c) = beta;
+    const Vec3 force = exchange.explicit_force(c);
+    for (int a = 0; a < 3; ++a) fields.force(c + a * n) = force[a];
+  }
+}
+
+// Coefficients at the velocities and fluxes at hand; diagonal terms of time, drag and relaxation.
+void GasSolver::Impl::assemble_momentum(Real dt) {
+  momentum.assemble(fields);
+  const Index n = fields.cells;
+  const Real keep = (1 - options.solver.velocity_relaxation) / options.solver.velocity_relaxation;
+  for_entries("cfd::gas_solver::inertia", n, [&](Index c) {
+    const Real own_inertia = geometry.volume(c) * (options.density * fields.void_fraction_old(c) / dt +
+                                                   fields.exchange_coefficient(c));
+    for (Index e = c; e < 3 * n; e += n) {
+      relaxation(e) = keep * (momentum.own()(e) + own_inertia);
+      inertia(e) = own_inertia + relaxation(e);
+    }
+  });
+}
+
+void GasSolver::Impl::update_mass_flux() {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    for_faces("cfd::gas_solver::mass_flux", geometry.stencil, axis, [&](Index f, Index, Index, Index, Index) {
+      fields.mass_flux[a](f) = options.density * geometry.area[a](f) * fields.superficial[a](f);
+    });
+    copy_periodic_faces(geometry.stencil, axis, fields.mass_flux[a]);
+  }
+}
+
+// rhs = -(volume that leaves the cell + growth of its gas volume) per second.
+Real GasSolver::Impl::compute_continuity_residual(Real dt) {
+  const Stencil& s = geometry.stencil;
+  for_rows("cfd::gas_solver::continuity", s, [&](const Index r) {
+    const Row row = s.row(r);
+    for (Index i = 0; i < s.n.x; ++i) {
+      const Index c = row.cell + i;
+      Real out = geometry.volume(c) * (fields.void_fraction(c) - fields.void_fraction_old(c)) / dt;
+      const Index first[3] = {row.x_face + i, row.y_face + i, row.z_face + i};
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const Index f = first[axis];
+        const Index g = f + s.face_step(axis);
+        out +=
+            geometry.area[a](g) * fields.superficial[a](g) - geometry.area[a](f) * fields.superficial[a](f);
+      }
+      rhs(c) = -out;
+    }
+  });
+  return sum("cfd::gas_solver::continuity_sum", s.cells(), [&](Index c) { return std::abs(rhs(c)); });
+}
+
+// Volume flow through a typical section of the domain, plus what moving particles displace [m3/s].
+Real GasSolver::Impl::gas_throughput(Real dt) {
+  Real total = sum("cfd::gas_solver::displaced", fields.cells, [&](Index c) {
+    return geometry.volume(c) * std::abs(fields.void_fraction(c) - fields.void_fraction_old(c)) / dt;
+  });
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Index count = geometry.stencil.faces(axis);
+    total += sum("cfd::gas_solver::through", count,
+                 [&](Index f) { return geometry.area[a](f) * std::abs(fields.superficial[a](f)); }) /
+             (geometry.stencil.n[axis] + 1);
+  }
+  return total;
+}
+
+void GasSolver::Impl::solve_pressure(Real dt, bool tightly, StepReport& report) {
+  momentum.compute_influx(fields, influx);
+  faces.predict(fields, momentum, influx, relaxation, dt, pressure_matrix);
+  const Real residual = compute_continuity_residual(dt);
+  const Real throughput = gas_throughput(dt);
+  if (pressure_matrix.singular) {
+    const Real surplus = sum("cfd::gas_solver::surplus", fields.cells, [&](Index c) { return rhs(c); });
+    if (std::abs(surplus) > 1e-8 * throughput) {
+      fail(
+          fmt::format("the domain is closed, but the gas in it would have to change by {:.3g} m3/s", surplus),
+          worst_cell());
+    }
+  }
+  const Real tight = options.solver.pressure_tolerance * throughput;
+  const Real target = tightly ? tight : std::max(tight, options.solver.loose_pressure_tolerance * residual);
+  const LinearReport linear =
+      pressure_solver.solve(pressure_matrix, rhs, correction, target, options.solver.max_linear_iterations);
+  report.pressure_iterations += linear.iterations;
+  if (!linear.converged) {
+    fail(
+        fmt::format("the pressure did not converge in {} iterations (mass residual {:.3g} of the throughput, "
+                    "allowed {:.3g})",
+                    linear.iterations, linear.residual / throughput, target / throughput),
+        worst_cell());
+  }
+  faces.correct(fields, correction);
+  update_mass_flux();
+  report.continuity_residual = throughput > 0 ? linear.residual / throughput : 0;
+}
+
+void GasSolver::Impl::solve_momentum(Real dt, StepReport& report) {
+  const Index n = fields.cells;
+  faces.compute_cell_force(fields, momentum, cell_force);
+  for_entries("cfd::gas_solver::cell_force", n, [&](Index c) {
+    const Real mass = options.density * fields.void_fraction_old(c) * geometry.volume(c) / dt;
+    for (Index e = c; e < 3 * n; e += n) {
+      cell_force(e) += mass * fields.velocity_old(e) + relaxation(e) * fields.velocity(e);
+    }
+  });
+  const MomentumReport linear = momentum.solve(fields, inertia, cell_force);
+  report.momentum_iterations += linear.iterations;
+  report.momentum_residual = linear.residual;
+  if (!linear.converged) {
+    fail(fmt::format("the velocity did not converge in {} iterations (relative residual {:.3g})",
+                     linear.iterations, linear.residual),
+         worst_cell());
+  }
+}
+
+Real GasSolver::Impl::face_velocity_change() const {
+  Real change = 0;
+  Real largest = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t f = 0; f < before[a].extent(0); ++f) {
+      change = std::max(change, std::abs(fields.superficial[a](f) - before[a](f)));
+      largest = std::max(largest, std::abs(fields.superficial[a](f)));
+    }
+  }
+  return largest > 0 ? change / largest : 0;
+}
+
+void GasSolver::Impl::fail(const std::string& what, Index cell) const {
+  const Index3 at = geometry.grid.coordinates(cell);
+  throw RunError(fmt::format("gas: {}, in cell ({}, {}, {}) at ({:.6g}, {:.6g}, {:.6g}) m, at t = {:.9g} s",
+                             what, at.x, at.y, at.z, geometry.grid.center(0, at.x),
+                             geometry.grid.center(1, at.y), geometry.grid.center(2, at.z), state.time));
+}
+
+// The cell that is not finite, else the one with the largest mass residual.
+Index GasSolver::Impl::worst_cell() const {
+  Index worst = 0;
+  for (Index c = 0; c < fields.cells; ++c) {
+    if (!std::isfinite(rhs(c) + fields.velocity(c))) return c;
+    if (std::abs(rhs(c)) > std::abs(rhs(worst))) worst = c;
+  }
+  return worst;
+}
+
+Real GasSolver::Impl::check_and_find_courant(Real dt) const {
+  const Stencil& s = geometry.stencil;
+  Real courant = 0;
+  for (Index k = 0; k < s.n.z; ++k) {
+    for (Index j = 0; j < s.n.y; ++j) {
+      for (Index i = 0; i < s.n.x; ++i) {
+        const Index c = s.cell(i, j, k);
+        const Vec3 u = state.velocity(c);
+        const Real own = dt * (std::abs(u.x) / geometry.axis[0].width[static_cast<std::size_t>(i)] +
+                               std::abs(u.y) / geometry.axis[1].width[static_cast<std::size_t>(j)] +
+                               std::abs(u.z) / geometry.axis[2].width[static_cast<std::size_t>(k)]);
+        if (!std::isfinite(own + fields.pressure(c))) fail("velocity or pressure is no longer finite", c);
+        courant = std::max(courant, own);
+      }
+    }
+  }
+  return courant;
+}
+
+void GasSolver::Impl::copy_velocity_to_state() {
+  const Index n = fields.cells;
+  for_entries("cfd::gas_solver::to_state", n, [&](Index c) {
+    state.velocity(c) = {fields.velocity(c), fields.velocity(c + n), fields.velocity(c + 2 * n)};
+  });
+  for (std::size_t a = 0; a < 3; ++a) {
+    for_entries("cfd::gas_solver::volume_flux", static_cast<Index>(state.volume_flux[a].extent(0)),
+                [&](Index f) { state.volume_flux[a](f) = geometry.area[a](f) * fields.superficial[a](f); });
+  }
+}
+
+void GasSolver::Impl::finish_step(Real dt, StepReport& report) {
+  faces.compute_pressure_gradient(fields, state.pressure_gradient);
+  copy_velocity_to_state();
+  report.courant_number = check_and_find_courant(dt);
+  add_to_balance(dt);
+  state.time += dt;
+}
+
+void GasSolver::Impl::update_stocks() {
+  const Real rho = options.density;
+  const Index n = fields.cells;
+  balance.mass = rho * sum("cfd::gas_solver::mass", n,
+                           [&](Index c) { return geometry.volume(c) * fields.void_fraction(c); });
+  for (int a = 0; a < 3; ++a) {
+    balance.momentum[a] = rho * sum("cfd::gas_solver::momentum", n, [&](Index c) {
+                            return geometry.volume(c) * fields.void_fraction(c) * fields.velocity(c + a * n);
+                          });
+  }
+}
+
+void GasSolver::Impl::add_to_balance(Real dt) {
+  update_stocks();
+  const Index n = fields.cells;
+  Vec3 convected, pressed, sheared;
+  for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries.pieces[b];
+    convected += dt * momentum.convected_inflow(fields, b);
+    sheared += dt * momentum.shear_force(fields, b);
+    pressed[piece.axis] -= dt * piece.outward * piece.area * faces.boundary_pressure(fields, b);
+    if (piece.patch < 0) continue;
+    PatchBalance& patch = balance.patches[static_cast<std::size_t>(piece.patch)];
+    const Real out = options.density * fields.piece_flow[b] * dt;
+    (out > 0 ? patch.mass_out : patch.mass_in) += std::abs(out);
+  }
+  const auto total = [&](const char* label, auto&& term) {
+    Vec3 result;
+    for (int a = 0; a < 3; ++a) {
+      result[a] = dt * sum(label, n, [&](Index c) { return geometry.volume(c) * term(c, a); });
+    }
+    return result;
+  };
+  const Vec3 body = total("cfd::gas_solver::body_impulse",
+                          [&](Index c, int a) { return fields.void_fraction(c) * options.body_force[a]; });
+  const Vec3 drag = total("cfd::gas_solver::drag_impulse", [&](Index c, int a) {
+    return fields.force(c + a * n) - fields.exchange_coefficient(c) * fields.velocity(c + a * n);
+  });
+  const Vec3 particle_pressure = total("cfd::gas_solver::pressure_impulse", [&](Index c, int a) {
+    return (1 - fields.void_fraction(c)) * state.pressure_gradient(c)[a];
+  });
+  for (const Vec3& part : {convected, pressed, sheared, body, drag, particle_pressure}) {
+    for (int a = 0; a < 3; ++a) balance.gross[a] += std::abs(part[a]);
+  }
+  balance.convected += convected;
+  balance.boundary_pressure += pressed;
+  balance.boundary_shear += sheared;
+  balance.body_force += body;
+  balance.drag += drag;
+  balance.particle_pressure += particle_pressure;
+}
+
+GasSolver::GasSolver(const CartesianGrid& grid, const GasOptions& options, std::vector<BoundaryPatch> patches)
+    : impl_(std::make_unique<Impl>(grid, options, std::move(patches))) {
+  initialise();
+}
+GasSolver::~GasSolver() = default;
+GasSolver::GasSolver(GasSolver&&) noexcept = default;
+GasSolver& GasSolver::operator=(GasSolver&&) noexcept = default;
+
+void GasSolver::initialise(const Vec3& velocity) {
+  HostArray<Real> void_fraction("cfd::gas_solver::initial_void_fraction",
+                                impl_->fields.void_fraction.extent(0));
+  Kokkos::deep_copy(void_fraction, 1.0);
+  initialise(velocity, void_fraction);
+}
+
+void GasSolver::initialise(const Vec3& velocity, const HostArray<Real>& void_fraction) {
+  HostArray<Vec3> field("cfd::gas_solver::initial_velocity", impl_->fields.void_fraction.extent(0));
+  Kokkos::deep_copy(field, velocity);
+  initialise(field, void_fraction);
+}
+
+void GasSolver::initialise(const HostArray<Vec3>& velocity, const HostArray<Real>& void_fraction) {
+  const Index n = impl_->fields.cells;
+  if (velocity.extent(0) != static_cast<std::size_t>(n) ||
+      void_fraction.extent(0) != static_cast<std::size_t>(n)) {
+    throw std::invalid_argument("the initial fields have another size than the gas grid");
+  }
+  for (Index c = 0; c < n; ++c) {
+    for (int a = 0; a < 3; ++a) impl_->fields.velocity(c + a * n) = velocity(c)[a];
+  }
+  impl_->initialise(void_fraction);
+}
+
+StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
+  Impl& s = *impl_;
+  const GasSolverOptions& options = s.options.solver;
+  StepReport report;
+  s.take_exchange(exchange, dt);
+  s.momentum.prepare(s.fields);
+  s.faces.prepare(s.fields);
+  // SIMPLEC: fluxes first, then velocities that satisfy the momentum balance with these very fluxes and this
+  // pressure, so that a step ends with both balances closed.
+  bool done = false;
+  while (!done) {
+    ++report.outer_iterations;
+    const bool last = report.outer_iterations >= options.max_outer_iterations;
+    const bool nearly_there =
+        report.outer_iterations > 1 && report.velocity_change < 10 * options.outer_tolerance;
+    for (std::size_t a = 0; a < 3; ++a) Kokkos::deep_copy(s.before[a], s.fields.superficial[a]);
+    s.assemble_momentum(dt);
+    s.solve_pressure(dt, last || nearly_there, report);
+    s.assemble_momentum(dt);
+    s.solve_momentum(dt, report);
+    report.velocity_change = s.face_velocity_change();
+    done = last || (nearly_there && report.velocity_change < options.outer_tolerance);
+  }
+  s.finish_step(dt, report);
+  return report;
+}
+
+const CartesianGrid& GasSolver::grid() const { return impl_->geometry.grid; }
+const GasOptions& GasSolver::options() const { return impl_->options; }
+const GasState& GasSolver::state() const { return impl_->state; }
+const GasBalance& GasSolver::balance() const { return impl_->balance; }
+
+Real GasSolver::patch_pressure(const std::string& name) const {
+  const Impl& s = *impl_;
+  const auto& names = s.boundaries.patch_names;
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw std::invalid_argument("the gas has no boundary '" + name + "'");
+  const int patch = static_cast<int>(found - names.begin());
+  Real force = 0;
+  Real area = 0;
+  for (std::size_t b = 0; b < s.boundaries.pieces.size(); ++b) {
+    const BoundaryPiece& piece = s.boundaries.pieces[b];
+    if (piece.patch != patch) continue;
+    force += piece.area *
+             (piece.kind == PieceKind::outlet ? piece.pressure : s.faces.boundary_pressure(s.fields, b));
+    area += piece.area;
+  }
+  return force / area;
+}
+
+Real GasSolver::pressure_drop(const std::string& from, const std::string& to) const {
+  return patch_pressure(from) - patch_pressure(to);
+}
+
+Real GasSolver::plane_pressure(int axis, Real coordinate) const {
+  const Impl& s = *impl_;
+  const Stencil& stencil = s.geometry.stencil;
+  const CartesianGrid& grid = s.geometry.grid;
+  const auto mean = [&](Index layer) {
+    Real force = 0;
+    Real area = 0;
+    for (Index c = 0; c < stencil.cells(); ++c) {
+      const Index3 at = grid.coordinates(c);
+      if (at[axis] != layer) continue;
+      const Real own = s.geometry.volume(c) / grid.width(axis, layer);
+      force += own * s.fields.pressure(c);
+      area += own;
+    }
+    return force / area;
+  };
+  const Index i = grid.locate(axis, coordinate);
+  const Index other = coordinate >= grid.center(axis, i) ? i + 1 : i - 1;
+  if (other < 0 || other >= stencil.n[axis]) return mean(i);
+  const Real w = (coordinate - grid.center(axis, i)) / (grid.center(axis, other) - grid.center(axis, i));
+  return (1 - w) * mean(i) + w * mean(other);
+}
+
+void GasSolver::drop_solver_hierarchies() { impl_->pressure_solver.drop(); }
+
+}  // namespace pellicle::cfd

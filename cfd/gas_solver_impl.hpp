@@ -1,0 +1,55 @@
+// Inside of GasSolver; only its own files include this.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cfd/boundary_pieces.hpp"
+#include "cfd/face_balance.hpp"
+#include "cfd/fixed_sum.hpp"
+#include "cfd/flow_geometry.hpp"
+#include "cfd/gas_fields.hpp"
+#include "cfd/gas_solver.hpp"
+#include "cfd/momentum.hpp"
+#include "cfd/pressure_system.hpp"
+
+namespace pellicle::cfd {
+
+struct GasSolver::Impl {
+  Impl(const CartesianGrid& grid, const GasOptions& gas_options, std::vector<BoundaryPatch> boundary_patches);
+
+  void initialise(const HostArray<Real>& void_fraction);
+  void take_exchange(const ParticleExchange& exchange, Real dt);
+  void assemble_momentum(Real dt);
+  Real compute_continuity_residual(Real dt);
+  Real gas_throughput(Real dt);
+  void solve_pressure(Real dt, bool tightly, StepReport& report);
+  void solve_momentum(Real dt, StepReport& report);
+  void update_mass_flux();
+  Real face_velocity_change() const;
+  void finish_step(Real dt, StepReport& report);
+  void add_to_balance(Real dt);
+  void update_stocks();
+  void copy_velocity_to_state();
+  Real check_and_find_courant(Real dt) const;
+  [[noreturn]] void fail(const std::string& what, Index cell) const;
+  Index worst_cell() const;
+
+  FlowGeometry geometry;
+  GasOptions options;
+  std::vector<BoundaryPatch> patches;
+  Boundaries boundaries;
+  GasFields fields;
+  MomentumEquation momentum;
+  FaceBalance faces;
+  PressureMatrix pressure_matrix;
+  PressureLinearSolver pressure_solver;
+  GasState state;
+  GasBalance balance;
+
+  HostArray<Real> influx, inertia, relaxation, cell_force, rhs, correction;
+  FaceField before;  ///< face velocities at the start of an outer iteration
+  FixedSum sum;
+};
+
+}  // namespace pellicle::cfd

@@ -1,0 +1,303 @@
+#include "cfd/momentum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace pellicle::cfd {
+
+namespace {
+
+HostArray<Real> make_array(const std::string& label, Index size) {
+  return HostArray<Real>(label, static_cast<std::size_t>(size));
+}
+
+}  // namespace
+
+GasFields::GasFields(const FlowGeometry& geometry, std::size_t piece_count)
+    : cells(geometry.stencil.cells()) {
+  velocity = make_array("cfd::gas_fields::velocity", 3 * cells);
+  velocity_old = make_array("cfd::gas_fields::velocity_old", 3 * cells);
+  pressure = make_array("cfd::gas_fields::pressure", cells);
+  void_fraction = make_array("cfd::gas_fields::void_fraction", cells);
+  void_fraction_old = make_array("cfd::gas_fields::void_fraction_old", cells);
+  exchange_coefficient = make_array("cfd::gas_fields::exchange_coefficient", cells);
+  force = make_array("cfd::gas_fields::force", 3 * cells);
+  superficial = make_face_field(geometry.stencil, "cfd::gas_fields::superficial");
+  superficial_old = make_face_field(geometry.stencil, "cfd::gas_fields::superficial_old");
+  mass_flux = make_face_field(geometry.stencil, "cfd::gas_fields::mass_flux");
+  piece_flow.assign(piece_count, 0);
+  piece_flow_old.assign(piece_count, 0);
+}
+
+MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundaries& boundaries,
+                                   const GasOptions& options)
+    : geometry_(geometry),
+      boundaries_(boundaries),
+      options_(options),
+      correction_(geometry),
+      conductance_(make_face_field(geometry.stencil, "cfd::momentum::conductance")),
+      tangential_conductance_(make_face_field(geometry.stencil, "cfd::momentum::tangential_conductance")) {
+  const Index n = geometry.stencil.cells();
+  for (std::size_t d = 0; d < 6; ++d) {
+    near_[d] = make_array("cfd::momentum::near" + std::to_string(d), n);
+    normal_[d] = make_array("cfd::momentum::normal" + std::to_string(d), n);
+  }
+  own_ = make_array("cfd::momentum::own", 3 * n);
+  source_ = make_array("cfd::momentum::source", 3 * n);
+  inverse_ = make_array("cfd::momentum::inverse", 3 * n);
+  r_ = make_array("cfd::momentum::r", 3 * n);
+  r0_ = make_array("cfd::momentum::r0", 3 * n);
+  p_ = make_array("cfd::momentum::p", 3 * n);
+  v_ = make_array("cfd::momentum::v", 3 * n);
+  s_ = make_array("cfd::momentum::s", 3 * n);
+  t_ = make_array("cfd::momentum::t", 3 * n);
+}
+
+void MomentumEquation::prepare(const GasFields& fields) {
+  const char* labels[] = {"cfd::momentum::prepare_x", "cfd::momentum::prepare_y", "cfd::momentum::prepare_z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const AxisMetrics& metrics = geometry_.axis[a];
+    const Real* eps = fields.void_fraction.data();
+    for_faces(labels[a], geometry_.stencil, axis,
+              [&](Index f, Index minus, Index plus, Index position, Index) {
+                const auto at = static_cast<std::size_t>(position);
+                const Real w = metrics.linear_minus[at];
+                conductance_[a](f) = options_.viscosity * geometry_.area[a](f) / metrics.distance[at];
+                tangential_conductance_[a](f) = conductance_[a](f) * (w * eps[minus] + (1 - w) * eps[plus]);
+              });
+    copy_periodic_faces(geometry_.stencil, axis, conductance_[a]);
+    copy_periodic_faces(geometry_.stencil, axis, tangential_conductance_[a]);
+  }
+}
+
+void MomentumEquation::assemble(const GasFields& fields) {
+  compute_convection_correction(geometry_, boundaries_, options_.convection, fields, correction_);
+  const Stencil& s = geometry_.stencil;
+  const Index n = fields.cells;
+  const Real* eps = fields.void_fraction.data();
+  const bool corrected = options_.convection != Convection::upwind;
+  for_rows("cfd::momentum::assemble", s, [&](const Index r) {
+    const Row row = s.row(r);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const Index step = s.face_step(axis);
+      const Index faces = s.faces(axis);
+      const Index first_face = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
+      const Real* flux = fields.mass_flux[a].data() + first_face;
+      const Real* conductance = conductance_[a].data() + first_face;
+      const Real* tangential = tangential_conductance_[a].data() + first_face;
+      const Real* extra = correction_.momentum_flux[a].data() + first_face;
+      Real* near_minus = near_[2 * a].data() + row.cell;
+      Real* near_plus = near_[2 * a + 1].data() + row.cell;
+      Real* normal_minus = normal_[2 * a].data() + row.cell;
+      Real* normal_plus = normal_[2 * a + 1].data() + row.cell;
+      const Index minus_row = axis == 1 ? row.y_minus : (axis == 2 ? row.z_minus : row.cell);
+      const Index plus_row = axis == 1 ? row.y_plus : (axis == 2 ? row.z_plus : row.cell);
+      Real* own[3];
+      Real* source[3];
+      for (int b = 0; b < 3; ++b) {
+        own[b] = own_.data() + b * n + row.cell;
+        source[b] = source_.data() + b * n + row.cell;
+      }
+      const int t1 = (axis + 1) % 3;
+      const int t2 = (axis + 2) % 3;
+      along_row(row, s.n.x, [&](Index i, Index left, Index right) {
+        const Real eps_own = eps[row.cell + i];
+        const Real eps_minus = eps[minus_row + (axis == 0 ? left : i)];
+        const Real eps_plus = eps[plus_row + (axis == 0 ? right : i)];
+        const Real in_minus = std::max(flux[i], Real{0});
+        const Real in_plus = std::max(-flux[i + step], Real{0});
+        near_minus[i] = in_minus + tangential[i];
+        near_plus[i] = in_plus + tangential[i + step];
+        normal_minus[i] = in_minus * (eps_minus / eps_own) + conductance[i] * eps_minus;
+        normal_plus[i] = in_plus * (eps_plus / eps_own) + conductance[i + step] * eps_plus;
+        const Real across = near_minus[i] + near_plus[i];
+        const Real along = in_minus + in_plus + (conductance[i] + conductance[i + step]) * eps_own;
+        Real normal_source = 0;
+        Real source1 = 0;
+        Real source2 = 0;
+        if (corrected) {
+          normal_source = (extra[i + axis * faces] - extra[i + step + axis * faces]) / eps_own;
+          source1 = extra[i + t1 * faces] - extra[i + step + t1 * faces];
+          source2 = extra[i + t2 * faces] - extra[i + step + t2 * faces];
+        }
+        if (axis == 0) {
+          own[0][i] = along;
+          own[1][i] = across;
+          own[2][i] = across;
+          source[0][i] = normal_source;
+          source[1][i] = source1;
+          source[2][i] = source2;
+        } else {
+          own[axis][i] += along;
+          own[t1][i] += across;
+          own[t2][i] += across;
+          source[axis][i] += normal_source;
+          source[t1][i] += source1;
+          source[t2][i] += source2;
+        }
+      });
+    }
+  });
+  add_boundaries(fields);
+}
+
+// Momentum that comes in with the gas, and stress, as a coefficient of the cell's velocity and a given value.
+namespace {
+
+struct PieceTerms {
+  Real inflow = 0;  ///< mass that enters [kg/s]
+  Vec3 brought;     ///< with this velocity
+  Real shear = 0;   ///< coefficient of the tangential slip [kg/s]
+};
+
+PieceTerms piece_terms(const BoundaryPiece& piece, Real flow, Real eps, const GasOptions& options) {
+  PieceTerms terms;
+  if (piece.kind == PieceKind::inlet || piece.kind == PieceKind::outlet) {
+    terms.inflow = options.density * std::max(-flow, Real{0});
+    // The superficial velocity is the same on both sides of the face; inside, the gas has eps of the room.
+    terms.brought[piece.axis] = piece.outward * flow / (piece.area * eps);
+  }
+  if (piece.kind == PieceKind::inlet || piece.kind == PieceKind::no_slip) {
+    terms.shear = options.viscosity * eps * piece.area / piece.half_width;
+  }
+  return terms;
+}
+
+}  // namespace
+
+void MomentumEquation::add_boundaries(const GasFields& fields) {
+  const Index n = fields.cells;
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    const PieceTerms terms =
+        piece_terms(piece, fields.piece_flow[b], fields.void_fraction(piece.cell), options_);
+    for (int a = 0; a < 3; ++a) {
+      const Index c = piece.cell + a * n;
+      const Real shear = a == piece.axis ? 0 : terms.shear;
+      const Real wall_speed = a == piece.axis ? 0 : piece.velocity[a];
+      own_(c) += terms.inflow + shear;
+      source_(c) += terms.inflow * terms.brought[a] + shear * wall_speed;
+    }
+  }
+}
+
+Vec3 MomentumEquation::convected_inflow(const GasFields& fields, std::size_t b) const {
+  const BoundaryPiece& piece = boundaries_.pieces[b];
+  const PieceTerms terms =
+      piece_terms(piece, fields.piece_flow[b], fields.void_fraction(piece.cell), options_);
+  const Real outflow = options_.density * std::max(fields.piece_flow[b], Real{0});
+  Vec3 result;
+  for (int a = 0; a < 3; ++a) {
+    result[a] = terms.inflow * terms.brought[a] - outflow * fields.velocity(piece.cell + a * fields.cells);
+  }
+  return result;
+}
+
+Vec3 MomentumEquation::shear_force(const GasFields& fields, std::size_t b) const {
+  const BoundaryPiece& piece = boundaries_.pieces[b];
+  const PieceTerms terms =
+      piece_terms(piece, fields.piece_flow[b], fields.void_fraction(piece.cell), options_);
+  Vec3 result;
+  for (int a = 0; a < 3; ++a) {
+    if (a == piece.axis) continue;
+    result[a] = terms.shear * (piece.velocity[a] - fields.velocity(piece.cell + a * fields.cells));
+  }
+  return result;
+}
+
+// result(entry, near sum) for every cell and component.
+template <class Result>
+void MomentumEquation::apply(const char* label, const Real* u, Result&& result) const {
+  const Stencil& s = geometry_.stencil;
+  const Index n = s.cells();
+  for_rows(label, s, [&](const Index r) {
+    const Row row = s.row(r);
+    for (int a = 0; a < 3; ++a) {
+      const Real* x = u + a * n;
+      const auto pick = [&](std::size_t d) {
+        return (static_cast<int>(d / 2) == a ? normal_[d] : near_[d]).data() + row.cell;
+      };
+      const Real *xm = pick(0), *xp = pick(1), *ym = pick(2), *yp = pick(3), *zm = pick(4), *zp = pick(5);
+      const Real *own = x + row.cell, *y_minus = x + row.y_minus, *y_plus = x + row.y_plus;
+      const Real *z_minus = x + row.z_minus, *z_plus = x + row.z_plus;
+      along_row(row, s.n.x, [&](Index i, Index left, Index right) {
+        result(row.cell + i + a * n, (xm[i] * own[left] + xp[i] * own[right]) +
+                                         (ym[i] * y_minus[i] + yp[i] * y_plus[i]) +
+                                         (zm[i] * z_minus[i] + zp[i] * z_plus[i]));
+      });
+    }
+  });
+}
+
+void MomentumEquation::compute_influx(const GasFields& fields, const HostArray<Real>& influx) const {
+  Real* h = influx.data();
+  const Real* source = source_.data();
+  apply("cfd::momentum::influx", fields.velocity.data(),
+        [&](Index e, Real near) { h[e] = near + source[e]; });
+}
+
+// BiCGStab (van der Vorst 1992) on the system divided by its diagonal, the three components together.
+MomentumReport MomentumEquation::solve(const GasFields& fields, const HostArray<Real>& inertia,
+                                       const HostArray<Real>& force) {
+  const Index n = geometry_.stencil.cells();
+  const Index size = 3 * n;
+  Real* u = fields.velocity.data();
+  Real *r = r_.data(), *r0 = r0_.data(), *p = p_.data(), *v = v_.data(), *s = s_.data(), *t = t_.data();
+  Real* inverse = inverse_.data();
+  const Real* own = own_.data();
+  const Real* source = source_.data();
+  const Real* given = force.data();
+  const Real* mass = inertia.data();
+  // Where nothing acts (no time step, no neighbours) the velocity stays.
+  for_entries("cfd::momentum::invert", n, [&](Index c) {
+    for (Index e = c; e < size; e += n) inverse[e] = 1 / (own[e] + mass[c]);
+  });
+  apply("cfd::momentum::start", u, [&](Index e, Real near) {
+    t[e] = (source[e] + given[e]) * inverse[e];
+    r[e] = t[e] + near * inverse[e] - u[e];
+    r0[e] = r[e];
+    p[e] = r[e];
+  });
+  const auto norm_of = [&](const char* label, const Real* x) {
+    return std::sqrt(sum_(label, size, [x](Index e) { return x[e] * x[e]; }));
+  };
+  const Real scale = std::max(norm_of("cfd::momentum::norm_b", t), norm_of("cfd::momentum::norm_u", u));
+  MomentumReport report;
+  Real residual = norm_of("cfd::momentum::norm_r", r);
+  const Real target = options_.solver.momentum_tolerance * scale;
+  Real rho = residual * residual;
+  while (residual > target && report.iterations < options_.solver.max_linear_iterations) {
+    apply("cfd::momentum::image_p", p, [&](Index e, Real near) { v[e] = p[e] - near * inverse[e]; });
+    const Real alpha = rho / sum_("cfd::momentum::dot_r0v", size, [&](Index e) { return r0[e] * v[e]; });
+    for_entries("cfd::momentum::half_step", size, [&](Index e) { s[e] = r[e] - alpha * v[e]; });
+    apply("cfd::momentum::image_s", s, [&](Index e, Real near) { t[e] = s[e] - near * inverse[e]; });
+    const Real tt = sum_("cfd::momentum::dot_tt", size, [&](Index e) { return t[e] * t[e]; });
+    const Real ts = sum_("cfd::momentum::dot_ts", size, [&](Index e) { return t[e] * s[e]; });
+    const Real omega = tt > 0 ? ts / tt : 0;
+    for_entries("cfd::momentum::step", size, [&](Index e) {
+      u[e] += alpha * p[e] + omega * s[e];
+      r[e] = s[e] - omega * t[e];
+    });
+    ++report.iterations;
+    residual = norm_of("cfd::momentum::norm_again", r);
+    if (residual <= target || !std::isfinite(residual)) break;
+    const Real rho_new = sum_("cfd::momentum::dot_r0r", size, [&](Index e) { return r0[e] * r[e]; });
+    if (std::abs(rho_new) < 1e-30 * residual * residual || omega == 0) {
+      // Breakdown: begin anew from here.
+      for_entries("cfd::momentum::restart", size, [&](Index e) { r0[e] = p[e] = r[e]; });
+      rho = residual * residual;
+      continue;
+    }
+    const Real beta = (rho_new / rho) * (alpha / omega);
+    rho = rho_new;
+    for_entries("cfd::momentum::turn", size, [&](Index e) { p[e] = r[e] + beta * (p[e] - omega * v[e]); });
+  }
+  report.residual = scale > 0 ? residual / scale : 0;
+  report.converged = residual <= target;
+  return report;
+}
+
+}  // namespace pellicle::cfd

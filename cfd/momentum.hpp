@@ -1,0 +1,63 @@
+// The momentum equations of the cells: coefficients, residual, solution.
+#pragma once
+
+#include <array>
+
+#include "cfd/boundary_pieces.hpp"
+#include "cfd/convection.hpp"
+#include "cfd/fixed_sum.hpp"
+#include "cfd/flow_geometry.hpp"
+#include "cfd/gas_fields.hpp"
+#include "cfd/gas_options.hpp"
+
+namespace pellicle::cfd {
+
+struct MomentumReport {
+  int iterations = 0;
+  Real residual = 0;  ///< relative
+  bool converged = true;
+};
+
+/// Per cell and component: (own + inertia) u = sum of near u_N + source + forces, where own and near hold convection
+/// (upwind; the rest of the scheme is in source) and viscous stress. The equation is the momentum balance less
+/// u times continuity (Patankar 1980), so own is the sum of near but for boundaries.
+class MomentumEquation {
+ public:
+  MomentumEquation(const FlowGeometry& geometry, const Boundaries& boundaries, const GasOptions& options);
+
+  /// Once a step, when the void fraction is known: viscous conductances.
+  void prepare(const GasFields& fields);
+  /// Coefficients from the mass fluxes and velocities at hand.
+  void assemble(const GasFields& fields);
+  /// 3 cells: sum of near u_N + source [N], from the velocities at hand.
+  void compute_influx(const GasFields& fields, const HostArray<Real>& influx) const;
+  /// Solves for the velocity in `fields`. `inertia` [kg/s] per cell is added to the diagonal, `force` [N], 3 cells,
+  /// to the right-hand side.
+  MomentumReport solve(const GasFields& fields, const HostArray<Real>& inertia, const HostArray<Real>& force);
+
+  /// Coefficients of u itself, 3 cells [kg/s].
+  const HostArray<Real>& own() const { return own_; }
+  const ConvectionCorrection& convection() const { return correction_; }
+  /// Momentum that a boundary piece carries into the gas per second, by convection and by viscous stress [N].
+  Vec3 convected_inflow(const GasFields& fields, std::size_t piece) const;
+  Vec3 shear_force(const GasFields& fields, std::size_t piece) const;
+
+ private:
+  void add_boundaries(const GasFields& fields);
+  template <class Result>
+  void apply(const char* label, const Real* u, Result&& result) const;
+
+  const FlowGeometry& geometry_;
+  const Boundaries& boundaries_;
+  const GasOptions& options_;
+  ConvectionCorrection correction_;
+  FaceField conductance_;             ///< mu area / distance [kg/s]; 0 on boundary faces
+  FaceField tangential_conductance_;  ///< the same times the face's void fraction
+  std::array<HostArray<Real>, 6> near_,
+      normal_;  ///< x-, x+, y-, y+, z-, z+; for components across, along that axis
+  HostArray<Real> own_, source_, inverse_;
+  HostArray<Real> r_, r0_, p_, v_, s_, t_;
+  FixedSum sum_;
+};
+
+}  // namespace pellicle::cfd
