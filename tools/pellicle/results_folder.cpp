@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "core/error.hpp"
@@ -13,13 +14,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array files{"case.yaml",      "run.log", "summary.json", "particles.h5",
-                           "particles.xdmf", "gas.h5",  "gas.xdmf",     "checkpoint.h5"};
-constexpr std::array subfolders{"lines", "probes", "histograms"};
+constexpr std::array<const char*, 8> files{"case.yaml",      "run.log", "summary.json", "particles.h5",
+                                           "particles.xdmf", "gas.h5",  "gas.xdmf",     "checkpoint.h5"};
+constexpr std::array<std::string_view, 3> subfolders{"lines", "probes", "histograms"};
 
+bool is_name_of_results(const std::string& name) {
+  const auto known = [&](const char* file) { return name == file || name == std::string(file) + ".tmp"; };
+  return std::any_of(files.begin(), files.end(), known) ||
+         std::find(subfolders.begin(), subfolders.end(), name) != subfolders.end();
+}
+
+/// The case file or the log tells; a run killed at its very start may have left some of the others alone.
 bool holds_results(const fs::path& folder) {
-  return fs::exists(folder / "case.yaml") || fs::exists(folder / "summary.json") ||
-         fs::exists(folder / "run.log") || fs::exists(folder / "checkpoint.h5");
+  if (fs::exists(folder / "case.yaml") || fs::exists(folder / "run.log")) return true;
+  const auto entries = fs::directory_iterator(folder);
+  return !fs::is_empty(folder) && std::all_of(begin(entries), end(entries), [](const auto& entry) {
+    return is_name_of_results(entry.path().filename().string());
+  });
 }
 
 void remove_results(const fs::path& folder) {
@@ -27,7 +38,7 @@ void remove_results(const fs::path& folder) {
     fs::remove(folder / name);
     fs::remove(core::temporary_name(folder / name));
   }
-  for (const char* name : subfolders) {
+  for (const std::string_view name : subfolders) {
     if (!fs::is_directory(folder / name)) continue;
     for (const auto& entry : fs::directory_iterator(folder / name)) {
       const auto extension = entry.path().extension();

@@ -1,9 +1,318 @@
 #include "tools/pellicle/simulation.hpp"
 
+#include <algorithm>
+#include <csignal>
+#include <utility>
+#include <variant>
+
+#include "core/checkpoint.hpp"
 #include "core/error.hpp"
+#include "core/log.hpp"
+#include "core/progress.hpp"
+#include "core/version.hpp"
+#include "tools/pellicle/build_case.hpp"
 
 namespace pellicle::tools {
+namespace {
 
-int run_simulation(const CaseSpec&, const RunOptions&) { throw RunError("this build cannot run cases"); }
+using core::Conserved;
+using core::Part;
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+}  // namespace
+
+void request_stop() noexcept { stop_requested = 1; }
+
+int run_simulation(const CaseSpec& spec, const RunOptions& options) {
+  stop_requested = 0;
+  return Simulation(spec, options).run();
+}
+
+Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
+    : spec_(spec),
+      options_(options),
+      time_(spec.time.end, spec.time.gas_step, spec.time.particle_step,
+            spec.particles.empty() ? 0 : spec.time.settle) {
+  if (!spec_.particles.empty()) particles_.emplace(make_engine_setup(spec_, time_.particle_step()));
+  if (spec_.gas) {
+    gas_.emplace(make_grid(spec_.gas->grid, spec_.domain), spec_.gas->options, spec_.gas->boundaries);
+    no_particles_ = cfd::make_empty_exchange(gas_->grid());
+  }
+  if (particles_ && gas_) {
+    exchange_.emplace(
+        make_coupling_options(spec_), make_grid(spec_.coupling.transfer_grid, spec_.domain), gas_->grid(),
+        coupling::GasProperties{spec_.gas->options.density, spec_.gas->options.viscosity, spec_.gravity});
+  }
+  if (options_.until) time_.end_at(*options_.until);
+  checkpoints_ = time_.schedule(spec_.output.checkpoint_every, "output.checkpoint.every");
+  // Everything that can be wrong with the input has shown by the end of start(); the folder is touched only then.
+  options_.resume ? resume() : start();
+}
+
+void Simulation::start() {
+  if (particles_) particles_->set_particles(make_particles(spec_));
+  folder_.emplace(options_.output_folder,
+                  options_.overwrite ? ResultsFolder::Existing::overwrite : ResultsFolder::Existing::refuse);
+  folder_->write_case(options_.case_yaml_text);
+  core::log().open_file(folder_->run_log());
+  outputs_.emplace(spec_, *folder_, time_, gas_ ? &gas_->grid() : nullptr, std::nullopt);
+  if (!time_.settling()) release_gas();
+}
+
+void Simulation::resume() {
+  folder_.emplace(options_.output_folder, ResultsFolder::Existing::resume);
+  if (!folder_->has_checkpoint()) {
+    throw InputError(folder_->path().string() + ": holds no checkpoint to resume from; run without --resume");
+  }
+  core::CheckpointReader file(folder_->checkpoint());
+  core::require_same_case(file.read_string("case"), options_.case_yaml_text);
+  core::log().open_file(folder_->run_log());
+  time_.load(file);
+  if (particles_) particles_->load(file);
+  if (gas_ && time_.step() >= 0) gas_->load(file);
+  if (exchange_ && time_.step() >= 0) exchange_->load(file);
+  ledger_.load(file);
+  outputs_.emplace(spec_, *folder_, time_, gas_ ? &gas_->grid() : nullptr, time_.step());
+  outputs_->load(file);
+  wall_impulse_ = file.read_vec3("run/wall_impulse");
+  support_impulse_ = file.read_vec3("run/support_impulse");
+  settled_gravity_ = file.read_vec3("run/settled_gravity");
+  settled_wall_ = file.read_vec3("run/settled_wall");
+  settled_volume_time_ = file.read_double("run/settled_volume_time");
+  summary_.largest_overlap = file.read_double("run/largest_overlap");
+  summary_.largest_impact_speed = file.read_double("run/largest_impact_speed");
+  summary_.particle_steps = file.read_double("run/particle_steps");
+  // Wall times are no part of the state: they come from the summary of the run that is resumed.
+  const Summary before = read_summary(folder_->summary());
+  wall_before_ = before.wall_seconds;
+  for (int part = 0; part < core::part_count; ++part) {
+    timers_.add(static_cast<Part>(part), before.wall_by_part[static_cast<std::size_t>(part)]);
+  }
+  core::log().info("resumed at t = {:g} s", time_.time());
+}
+
+int Simulation::run() {
+  for (const std::string& message : time_.messages()) core::log().warn("{}", message);
+  wall_begin_ = core::wall_clock();
+  core::Progress progress(time_.time(), time_.end());
+  try {
+    if (!options_.resume) {
+      if (time_.step() == 0) write_outputs();
+      write_checkpoint();
+    }
+    while (!time_.finished() && stop_requested == 0) {
+      advance_outer_step();
+      write_outputs(time_.finished() || stop_requested != 0);
+      if (checkpoints_.due(time_.step())) write_checkpoint();
+      progress.update(time_.time(), [this] { return describe_progress(); });
+    }
+    progress.finish();
+    write_checkpoint();
+  } catch (const RunError& failure) {
+    progress.finish();
+    write_summary("failed", failure.what());
+    throw RunError(std::string(failure.what()) + " (at t = " + std::to_string(time_.time()) + " s; " +
+                   folder_->checkpoint().string() + " holds the last good state)");
+  }
+  write_summary(stop_requested == 0 ? "done" : "stopped");
+  return stop_requested == 0 ? 0 : static_cast<int>(ExitCode::interrupted);
+}
+
+void Simulation::advance_outer_step() {
+  sample_gas();
+  move_particles();
+  deposit_particles();
+  if (!time_.settling()) move_gas();
+  watch_contacts();
+  time_.advance();
+  if (time_.step() == 0) release_gas();  // from below: the bed has settled
+}
+
+void Simulation::sample_gas() {
+  if (particles_) {
+    const core::Timers::Scope scope(timers_, Part::neighbours);
+    particles_->prepare_outer_step();
+  }
+  if (!coupled()) return;
+  const core::Timers::Scope scope(timers_, Part::coupling);
+  exchange_->sample_gas(gas_->state().velocity, gas_->state().pressure_gradient);
+  exchange_->compute_coefficients(particles_->particles());
+}
+
+void Simulation::move_particles() {
+  if (!particles_) return;
+  summary_.particle_steps += static_cast<double>(particles_->particles().count) * time_.substeps();
+  if (!coupled()) {
+    particles_->advance(time_.substeps(), dem::NoFluid{}, timers_);
+    return;
+  }
+  std::visit([this](const auto& force) { particles_->advance(time_.substeps(), force, timers_); },
+             exchange_->fluid_force(particles_->particles()));
+}
+
+void Simulation::deposit_particles() {
+  if (!coupled()) return;
+  const core::Timers::Scope scope(timers_, Part::coupling);
+  exchange_->deposit(particles_->particles(), time_.gas_step());
+}
+
+void Simulation::move_gas() {
+  if (!gas_) return;
+  {
+    const core::Timers::Scope scope(timers_, Part::gas);
+    gas_->update(time_.gas_step(), exchange_ ? exchange_->exchange() : no_particles_);
+  }
+  if (!coupled()) return;
+  const core::Timers::Scope scope(timers_, Part::coupling);
+  exchange_->close_step(gas_->state(), time_.gas_step());
+}
+
+/// t = 0: the particles have settled, the gas begins around them, and the ledger opens.
+void Simulation::release_gas() {
+  if (exchange_) {
+    exchange_->initialise(particles_->particles());
+    gas_->initialise(spec_.gas->velocity, exchange_->exchange().void_fraction);
+  } else if (gas_) {
+    gas_->initialise(spec_.gas->velocity);
+  }
+  if (particles_) {
+    settled_gravity_ = particles_->gravity_impulse();
+    settled_volume_time_ = particles_->volume_time();
+    settled_wall_ = wall_impulse_ + support_impulse_;
+  }
+  if (gas_) ledger_.open(Conserved::gas_mass, gas_->balance().mass_initial);
+  Vec3 momentum{};
+  if (gas_) momentum += gas_->balance().momentum;
+  if (particles_) momentum += particles_->compute_totals().momentum;
+  ledger_.open(Conserved::momentum, momentum);
+}
+
+void Simulation::watch_contacts() {
+  if (!particles_) return;
+  const core::Timers::Scope scope(timers_, Part::contacts);
+  contacts_ = particles_->collect_report();
+  wall_impulse_ += contacts_.wall_impulse;
+  support_impulse_ += contacts_.support_impulse;
+  summary_.largest_overlap = std::max(summary_.largest_overlap, contacts_.largest_overlap);
+  summary_.largest_impact_speed = std::max(summary_.largest_impact_speed, contacts_.largest_approach_speed);
+}
+
+/// Mass of the gas; momentum of gas, particles and what is still in transit between them. Through the boundaries goes
+/// what the gas exchanges with its boundaries and what walls give to particles; gravity is a source.
+void Simulation::update_ledger() {
+  if (time_.step() < 0) return;
+  Vec3 stock{}, through{}, sources{};
+  Real gross = 0;
+  if (gas_) {
+    const cfd::GasBalance& gas = gas_->balance();
+    ledger_.set_stock(Conserved::gas_mass, gas.mass);
+    ledger_.set_totals(Conserved::gas_mass, Vec3{gas.mass_in() - gas.mass_out(), 0, 0}, Vec3{},
+                       gas.mass_in() + gas.mass_out());
+    stock += gas.momentum;
+    through += gas.convected + gas.boundary_pressure + gas.boundary_shear;
+    sources += gas.body_force;
+    gross += norm(gas.gross);
+  }
+  if (exchange_) {
+    stock += exchange_->totals().pending;
+    gross += exchange_->totals().gross;
+    if (exchange_->options().exchange == coupling::Exchange::one_way) {
+      // The gas gives without losing: a source of momentum, by choice of the user.
+      sources += exchange_->totals().particles_received;
+    }
+  }
+  if (particles_) {
+    const dem::ParticleTotals totals = particles_->compute_totals();
+    stock += totals.momentum;
+    through += wall_impulse_ + support_impulse_ - settled_wall_ - particles_->left_momentum();
+    const Vec3 gravity = particles_->gravity_impulse() - settled_gravity_;
+    sources += gravity;
+    gross += norm(gravity);
+    if (exchange_ && exchange_->options().pressure_gradient_force) {
+      sources +=
+          (-spec_.gas->options.density * (particles_->volume_time() - settled_volume_time_)) * spec_.gravity;
+    }
+  }
+  ledger_.set_stock(Conserved::momentum, stock);
+  ledger_.set_totals(Conserved::momentum, through, sources, gross);
+}
+
+Real Simulation::contacts_per_particle() const {
+  if (!particles_ || particles_->particles().count == 0) return 0;
+  return 2.0 * static_cast<Real>(contacts_.touching_pairs) / particles_->particles().count;
+}
+
+void Simulation::write_outputs(bool last) {
+  if (time_.step() < 0) return;
+  const core::Timers::Scope scope(timers_, Part::output);
+  OutputState state;
+  state.step = time_.step();
+  state.time = time_.time();
+  state.contacts = {contacts_per_particle(), summary_.largest_overlap};
+  GasFields fields;
+  if (particles_) state.particles = &particles_->particles();
+  if (gas_) {
+    const cfd::GasState& gas = gas_->state();
+    fields = {&gas_->grid(),     gas.velocity,          gas.pressure,
+              gas.void_fraction, gas.pressure_gradient, spec_.gas->options.density};
+    state.gas = &fields;
+  }
+  outputs_->sample(state, last);
+}
+
+void Simulation::write_checkpoint() {
+  const core::Timers::Scope scope(timers_, Part::output);
+  // What resuming cannot have is dropped here too, so that both go on the same way.
+  if (particles_) particles_->canonicalise();
+  if (gas_) gas_->drop_solver_hierarchies();
+  outputs_->flush();
+  write_summary("running");
+  core::CheckpointWriter file(folder_->checkpoint());
+  file.write("case", options_.case_yaml_text);
+  time_.save(file);
+  if (particles_) particles_->save(file);
+  if (gas_ && time_.step() >= 0) gas_->save(file);
+  if (exchange_ && time_.step() >= 0) exchange_->save(file);
+  ledger_.save(file);
+  outputs_->save(file);
+  file.write("run/wall_impulse", wall_impulse_);
+  file.write("run/support_impulse", support_impulse_);
+  file.write("run/settled_gravity", settled_gravity_);
+  file.write("run/settled_wall", settled_wall_);
+  file.write("run/settled_volume_time", settled_volume_time_);
+  file.write("run/largest_overlap", summary_.largest_overlap);
+  file.write("run/largest_impact_speed", summary_.largest_impact_speed);
+  file.write("run/particle_steps", summary_.particle_steps);
+  file.close();
+}
+
+void Simulation::write_summary(const std::string& status, const std::string& message) {
+  update_ledger();
+  summary_.status = status;
+  summary_.message = message;
+  summary_.title = spec_.title;
+  summary_.program_version = version();
+  summary_.program_commit = commit();
+  summary_.simulated_seconds = std::max<Real>(time_.time(), 0);
+  summary_.wall_seconds = wall_before_ + core::wall_clock() - wall_begin_;
+  summary_.set_times(timers_);
+  summary_.set_defects(ledger_);
+  summary_.threads = Host().concurrency();
+  summary_.gas_steps = gas_ ? std::max<std::int64_t>(time_.step(), 0) : 0;
+  if (particles_) {
+    summary_.particles = particles_->particles().count;
+    summary_.contacts_per_particle = contacts_per_particle();
+    summary_.particles_left_through_open_sides = particles_->left_through_open_sides();
+  }
+  summary_.peak_memory_bytes = peak_memory_bytes();
+  tools::write_summary(folder_->summary(), summary_);
+}
+
+std::string Simulation::describe_progress() const {
+  if (!particles_) return {};
+  return std::to_string(particles_->particles().count) + " particles, largest overlap " +
+         std::to_string(100 * summary_.largest_overlap) + " % of the radius";
+}
 
 }  // namespace pellicle::tools

@@ -1,11 +1,22 @@
 // The whole simulation: owns all states and the loop.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "cfd/gas_solver.hpp"
+#include "core/ledger.hpp"
+#include "core/time_control.hpp"
+#include "core/timers.hpp"
 #include "core/types.hpp"
+#include "coupling/momentum_exchange.hpp"
+#include "dem/engine.hpp"
 #include "tools/pellicle/case_spec.hpp"
+#include "tools/pellicle/outputs.hpp"
+#include "tools/pellicle/results_folder.hpp"
+#include "tools/pellicle/summary.hpp"
 
 namespace pellicle::tools {
 
@@ -18,7 +29,64 @@ struct RunOptions {
   std::string case_yaml_text;  ///< the case with all defaults filled in
 };
 
-/// Runs the case and returns the exit code; throws InputError or RunError. Kokkos must be initialised.
+/// Runs the case and returns the exit code (0 done, 130 interrupted); throws InputError before anything was computed
+/// or RunError after leaving a checkpoint and a summary. Kokkos must be initialised.
 int run_simulation(const CaseSpec& spec, const RunOptions& options);
+
+/// Asks the running simulation to stop after the present outer step, with a checkpoint. Safe in a signal handler.
+void request_stop() noexcept;
+
+/// All states of a run and the loop over its outer steps. Either engine may be absent: a case without `particles:` is
+/// pure CFD, one without `gas:` pure DEM.
+class Simulation {
+ public:
+  Simulation(const CaseSpec& spec, const RunOptions& options);
+
+  /// Runs to the end, or to `until`, or to a requested stop; returns the exit code.
+  int run();
+
+ private:
+  void start();
+  void resume();
+
+  // One outer step, in the order of docs/theory: the gas is sampled, the particles move, they are deposited, the gas
+  // moves.
+  void advance_outer_step();
+  void sample_gas();
+  void move_particles();
+  void deposit_particles();
+  void move_gas();
+  void release_gas();
+
+  void watch_contacts();
+  void update_ledger();
+  void write_outputs(bool last = false);
+  Real contacts_per_particle() const;
+  void write_checkpoint();
+  void write_summary(const std::string& status, const std::string& message = {});
+  std::string describe_progress() const;
+  bool coupled() const { return exchange_.has_value() && !time_.settling(); }
+
+  CaseSpec spec_;
+  RunOptions options_;
+  core::TimeControl time_;
+  std::optional<ResultsFolder> folder_;
+
+  std::optional<dem::Engine> particles_;
+  std::optional<cfd::GasSolver> gas_;
+  std::optional<coupling::MomentumExchange> exchange_;
+  std::optional<Outputs> outputs_;
+
+  core::Timers timers_;
+  core::Ledger ledger_;
+  core::Schedule checkpoints_;
+  Summary summary_;
+  cfd::ParticleExchange no_particles_;       // what a gas without particles feels
+  dem::ContactReport contacts_;              // of the last outer step
+  Vec3 wall_impulse_{}, support_impulse_{};  // since the start [N s]
+  Vec3 settled_gravity_{}, settled_wall_{};  // of these, what acted before t = 0 [N s]
+  Real settled_volume_time_ = 0;             // [m3 s]
+  double wall_begin_ = 0, wall_before_ = 0;  // of this process, and of those before it [s]
+};
 
 }  // namespace pellicle::tools

@@ -1,0 +1,117 @@
+#!/usr/bin/python3
+"""A run gives the same result bit for bit on one and on two threads, and after kill -9 and --resume.
+
+A small coupled bed is run four times: on one thread, on two, killed at a moment that nothing chose and resumed, and
+stopped by a signal and resumed. The final checkpoints must hold the same bytes in every state array.
+"""
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+PROGRAM = os.environ["PELLICLE_PROGRAM"]
+
+CASE = """
+title: small bed for bitwise comparison
+seed: 3
+domain: {min: [0, 0, 0], max: ["30 mm", "12 mm", "60 mm"]}
+time: {end: "30 ms", gas_step: "1e-4 s", particle_step: "1e-5 s", impact_speed: "2 m/s", settle: "20 ms"}
+materials:
+  glass: {density: 2505, youngs_modulus: 1e7, poisson_ratio: 0.22}
+contacts:
+  pairs:
+    - {between: [glass, glass], restitution: 0.9, sliding_friction: 0.3, rolling_friction: 0.01}
+    - {between: [glass, wall], restitution: 0.9, sliding_friction: 0.3, rolling_friction: 0.01}
+particles:
+  - {material: glass, count: 300, diameter: "3 mm", fill: {box: {min: [0, 0, 0], max: ["30 mm", "12 mm", "50 mm"]}}}
+walls:
+  - {name: sides, box: domain, material: wall}
+gas:
+  density: 1.149
+  viscosity: 1.87e-5
+  grid: {cells: [6, 2, 12]}
+  boundaries:
+    - {name: jet, on: bottom, region: {box: {min: ["10 mm", 0, 0], max: ["20 mm", "12 mm", 0]}}, inlet: {velocity: "8 m/s"}}
+    - {name: rest, on: bottom, inlet: {velocity: "1 m/s"}}
+    - {name: top, on: top, outlet: {pressure: 0}}
+coupling: {drag: beetstra, deposition: divided}
+output:
+  checkpoint: {every: "1 ms"}
+  snapshots: {every: "10 ms", particles: [velocity], gas: [velocity]}
+"""
+
+# Counts of work done are no state of the bed.
+IGNORED = {"case"}
+
+
+def run(folder, case, threads, *more, check=True):
+    command = [PROGRAM, "run", str(case), "--output", str(folder), "--threads", str(threads), *more]
+    environment = dict(os.environ, OMP_PROC_BIND="false", OMP_NUM_THREADS=str(threads))
+    result = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if check and result.returncode != 0:
+        sys.exit(f"{' '.join(command)} ended with {result.returncode}:\n{result.stdout}")
+    return result
+
+
+def state_of(folder):
+    arrays = {}
+    with h5py.File(folder / "checkpoint.h5") as file:
+        def visit(name, item):
+            if isinstance(item, h5py.Dataset) and name not in IGNORED:
+                arrays[name] = np.asarray(item[()])
+        file.visititems(visit)
+    return arrays
+
+
+def compare(name, expected, got):
+    problems = []
+    if expected.keys() != got.keys():
+        problems.append(f"other arrays: {sorted(expected.keys() ^ got.keys())}")
+    for key in expected.keys() & got.keys():
+        if expected[key].tobytes() != got[key].tobytes():
+            problems.append(f"{key} differs")
+    print(f"{name}: {len(expected)} arrays, {'the same bit for bit' if not problems else problems}")
+    return not problems
+
+
+def kill_and_resume(folder, case, how, delay):
+    command = [PROGRAM, "run", str(case), "--output", str(folder), "--threads", "2"]
+    environment = dict(os.environ, OMP_PROC_BIND="false", OMP_NUM_THREADS="2")
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.time() + 60
+    while not (folder / "checkpoint.h5").exists() and process.poll() is None and time.time() < deadline:
+        time.sleep(0.005)
+    time.sleep(delay)
+    finished = process.poll() is not None
+    process.send_signal(how)
+    process.wait()
+    print(f"signal {how} after {delay:.3f} s{', after the run had ended' if finished else ''}")
+    run(folder, case, 2, "--resume")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as place:
+        place = Path(place)
+        case = place / "case.yaml"
+        case.write_text(CASE)
+        begin = time.time()
+        run(place / "one", case, 1)
+        duration = time.time() - begin
+        run(place / "two", case, 2)
+        expected = state_of(place / "one")
+        assert "dem/position_radius" in expected and len(expected["dem/position_radius"]) > 0, sorted(expected)
+        good = compare("two threads", expected, state_of(place / "two"))
+        kill_and_resume(place / "killed", case, signal.SIGKILL, random.uniform(0.1, 0.6) * duration)
+        good &= compare("killed and resumed", expected, state_of(place / "killed"))
+        sys.exit(0 if good else 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,166 @@
+#include "tools/pellicle/build_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "core/error.hpp"
+#include "core/model_variant.hpp"
+#include "dem/fill.hpp"
+
+namespace pellicle::tools {
+namespace {
+
+template <class Family>
+void choose_model(const std::string& name, const std::string& where, Family& family) {
+  const int index = core::find_model(core::model_list<Family>(), name);
+  if (index < 0) throw InputError(where + ": no model named '" + name + "'");
+  family = core::make_model<Family>(index);
+}
+
+dem::PlaneWall make_side(const CaseSpec& spec, const WallSpec& wall, cfd::Side side) {
+  const int axis = cfd::axis_of(side);
+  const bool upper = cfd::is_max(side);
+  dem::PlaneWall plane;
+  plane.name = wall.name;
+  plane.point = upper ? spec.domain.box.max : spec.domain.box.min;
+  plane.normal[axis] = upper ? -1 : 1;
+  plane.velocity = wall.velocity;
+  plane.material = wall.material;
+  return plane;
+}
+
+std::vector<Real> radii_of(const CaseSpec& spec, const PopulationSpec& population) {
+  const Real radius = 0.5 * population.diameter;
+  const Real volume = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+  Real count = 0;
+  if (population.count) {
+    count = static_cast<Real>(*population.count);
+  } else if (population.total_mass) {
+    const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
+    count = std::round(*population.total_mass / (density * volume));
+  } else {
+    const FillSpec& fill = *population.fill;
+    const Real region = fill.box ? dem::region_volume(*fill.box)
+                                 : dem::region_volume(dem::CylinderRegion{
+                                       fill.cylinder->from, fill.cylinder->to, fill.cylinder->radius});
+    count = std::floor(*fill.solids_fraction * region / volume);
+  }
+  if (count > 2e9) throw InputError(population.where + ": more than 2e9 particles");
+  return std::vector<Real>(static_cast<std::size_t>(count), radius);
+}
+
+void add_filled(const CaseSpec& spec, const PopulationSpec& population, std::uint64_t seed,
+                std::vector<dem::ParticleSeed>& particles) {
+  const FillSpec& fill = *population.fill;
+  const std::vector<Real> radii = radii_of(spec, population);
+  dem::FillRegion region;
+  if (fill.box) region = *fill.box;
+  if (fill.cylinder)
+    region = dem::CylinderRegion{fill.cylinder->from, fill.cylinder->to, fill.cylinder->radius};
+  std::vector<dem::PlacedSphere> present;
+  present.reserve(particles.size());
+  for (const auto& p : particles) present.push_back({p.position, p.radius});
+  const auto pattern =
+      fill.pattern == FillPattern::lattice ? dem::FillPattern::lattice : dem::FillPattern::random;
+  const std::vector<Vec3> centres = dem::fill_region(region, pattern, radii, seed, present);
+  if (centres.size() < radii.size()) {
+    const Real radius = 0.5 * population.diameter;
+    const Real fraction = static_cast<Real>(radii.size()) * 4.0 / 3.0 * std::numbers::pi * radius * radius *
+                          radius / dem::region_volume(region);
+    throw InputError(
+        fill.where + ": " + std::to_string(radii.size()) + " particles do not fit, only " +
+        std::to_string(centres.size()) + " do (the solids fraction would be " + std::to_string(fraction) +
+        "); allowed is a larger region (random fills up to about 0.35, lattice up to 0.52) or fewer "
+        "particles");
+  }
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    particles.push_back(
+        {centres[i], population.velocity, population.spin, radii[i], population.material, population.fixed});
+  }
+}
+
+}  // namespace
+
+dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
+  dem::EngineSetup setup;
+  setup.domain.box = spec.domain.box;
+  const bool boxed =
+      std::any_of(spec.walls.begin(), spec.walls.end(), [](const WallSpec& w) { return w.box; });
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool periodic = spec.domain.periodic[static_cast<std::size_t>(axis)];
+    setup.domain.periodic[axis] = periodic ? 1 : 0;
+    // Without box walls particles leave wherever no other wall holds them.
+    setup.domain.open_min[axis] = setup.domain.open_max[axis] = boxed || periodic ? 0 : 1;
+  }
+  for (const MaterialSpec& m : spec.materials) {
+    setup.materials.push_back({m.name, m.density, m.youngs_modulus, m.poisson_ratio, m.rigid});
+  }
+  for (const PairSpec& p : spec.contacts.pairs) {
+    setup.pairs.push_back(
+        {p.material_a, p.material_b, p.restitution, p.sliding_friction, p.rolling_friction});
+  }
+  choose_model(spec.contacts.normal, spec.where("contacts.model.normal"), setup.contacts.normal);
+  choose_model(spec.contacts.tangential, spec.where("contacts.model.tangential"), setup.contacts.tangential);
+  choose_model(spec.contacts.rolling, spec.where("contacts.model.rolling"), setup.contacts.rolling);
+  // Without rolling friction anywhere the law would compute zeros.
+  if (std::all_of(spec.contacts.pairs.begin(), spec.contacts.pairs.end(),
+                  [](const PairSpec& p) { return p.rolling_friction == 0; })) {
+    setup.contacts.rolling = dem::NoRolling{};
+  }
+  setup.contacts.clip = spec.contacts.clip;
+  setup.contacts.overlap_limit = spec.contacts.overlap_limit;
+  for (const WallSpec& wall : spec.walls) {
+    if (wall.box) {
+      for (int s = 0; s < 6; ++s) {
+        const auto side = static_cast<cfd::Side>(s);
+        if (setup.domain.periodic[s / 2] != 0) continue;
+        if (std::find(wall.open.begin(), wall.open.end(), side) != wall.open.end()) {
+          (s % 2 == 0 ? setup.domain.open_min : setup.domain.open_max)[s / 2] = 1;
+          continue;
+        }
+        setup.walls.push_back(make_side(spec, wall, side));
+      }
+    } else if (wall.plane) {
+      setup.walls.push_back({wall.name, wall.plane->point, wall.plane->normal, wall.velocity, wall.material});
+    }
+  }
+  setup.gravity = spec.gravity;
+  setup.time_step = particle_step;
+  return setup;
+}
+
+std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec) {
+  std::vector<dem::ParticleSeed> particles;
+  std::uint64_t seed = spec.seed;
+  // Listed particles first, so that fills keep clear of them; ids follow this order.
+  for (const PopulationSpec& population : spec.particles) {
+    for (const ListedParticleSpec& p : population.list) {
+      particles.push_back({p.position, p.velocity, p.spin, 0.5 * p.diameter, population.material, p.fixed});
+    }
+  }
+  for (const PopulationSpec& population : spec.particles) {
+    if (population.fill) add_filled(spec, population, seed++, particles);
+  }
+  return particles;
+}
+
+CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {
+  return CartesianGrid(grid.faces, domain.periodic);
+}
+
+coupling::CouplingOptions make_coupling_options(const CaseSpec& spec) {
+  const CouplingSpec& c = spec.coupling;
+  coupling::CouplingOptions options;
+  choose_model(c.drag, spec.where("coupling.drag"), options.drag);
+  choose_model(c.deposition, spec.where("coupling.deposition"), options.deposition);
+  options.exchange = static_cast<coupling::Exchange>(c.exchange);
+  options.coefficients = static_cast<coupling::Coefficients>(c.coefficients);
+  options.pressure_gradient_force = c.pressure_gradient_force;
+  options.minimum_void_fraction = c.minimum_void_fraction;
+  return options;
+}
+
+}  // namespace pellicle::tools

@@ -1,0 +1,24 @@
+// From what a case file says to what the engines are made of.
+#pragma once
+
+#include <vector>
+
+#include "core/cartesian_grid.hpp"
+#include "coupling/coupling_options.hpp"
+#include "dem/engine.hpp"
+#include "tools/pellicle/case_spec.hpp"
+
+namespace pellicle::tools {
+
+/// Materials, contact models, walls and domain of the particles; time step in s (the one the loop really uses).
+dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step);
+
+/// All particles of the case, populations in the order of the file. Throws InputError if they do not fit.
+std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec);
+
+/// The gas grid with the domain's periodic directions.
+CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain);
+
+coupling::CouplingOptions make_coupling_options(const CaseSpec& spec);
+
+}  // namespace pellicle::tools
