@@ -25,13 +25,13 @@ enum class Coefficients { gas_step, substep };
 
 /// Names of the case file, in the order of the enums.
 inline constexpr core::ModelInfo exchange_models[] = {
-    {"implicit", "drag linear in the new gas velocity; what that misses is carried into later steps", ""},
-    {"explicit", "the gas gets exactly what the particles received during the step", ""},
-    {"one_way", "the particles feel the gas, the gas does not feel the particles", ""},
+    {"implicit", "drag implicit in the gas velocity; what that misses is carried into later steps"},
+    {"explicit", "the gas gets exactly what the particles received during the step"},
+    {"one_way", "the particles feel the gas, the gas does not feel the particles"},
 };
 inline constexpr core::ModelInfo coefficients_models[] = {
-    {"gas_step", "momentum exchange coefficients are computed once a gas step", ""},
-    {"substep", "momentum exchange coefficients follow each particle's velocity, every particle step", ""},
+    {"gas_step", "the momentum exchange coefficient of each particle is computed once a gas step"},
+    {"substep", "it is computed anew with the particle's own velocity every particle step"},
 };
 
 struct CouplingOptions {

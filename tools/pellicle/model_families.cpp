@@ -4,7 +4,7 @@
 
 #include "cfd/gas_options.hpp"
 #include "core/model_variant.hpp"
-#include "coupling/drag_laws.hpp"
+#include "coupling/coupling_options.hpp"
 #include "dem/contact_laws.hpp"
 #include "tools/pellicle/output_fields.hpp"
 
@@ -23,20 +23,6 @@ constexpr core::ModelInfo fill_pattern_list[] = {
     {"lattice", "cubic, bottom layer first"},
     {"random", "uniform, one after the other without overlap; up to a solids fraction of about 0.35"}};
 
-constexpr core::ModelInfo exchange_list[] = {
-    {"implicit", "drag implicit in the gas velocity; what that misses is carried into the next step"},
-    {"explicit", "the gas gets exactly what the particles got, one step later"},
-    {"one_way", "particles feel the gas, the gas does not feel the particles"}};
-
-constexpr core::ModelInfo coefficient_list[] = {
-    {"gas_step", "the momentum exchange coefficient of each particle is computed once a gas step"},
-    {"substep", "it is computed anew with the particle's own velocity every particle step"}};
-
-constexpr core::ModelInfo deposition_list[] = {
-    {"divided", "33 pieces of equal volume, each into the cell of its centre",
-     "thesis section 3.3.1, Fig. 3.4"},
-    {"centroid", "the whole particle into the cell of its centre", "thesis section 3.3.1"}};
-
 template <std::size_t N, std::size_t M>
 constexpr std::array<core::ModelInfo, N + M> join(const std::array<core::ModelInfo, N>& a,
                                                   const std::array<core::ModelInfo, M>& b) {
@@ -53,13 +39,13 @@ constexpr auto probe_quantity_list = join(line_quantity_list, bed_quantities);
 constinit const core::ModelList axes = axis_list;
 constinit const core::ModelList domain_sides = side_list;
 constinit const core::ModelList fill_patterns = fill_pattern_list;
-constinit const core::ModelList exchanges = exchange_list;
-constinit const core::ModelList coefficients = coefficient_list;
+constinit const core::ModelList exchanges = coupling::exchange_models;
+constinit const core::ModelList coefficients = coupling::coefficients_models;
 constinit const core::ModelList normal_contact_models = core::model_list<dem::NormalLaw>();
 constinit const core::ModelList tangential_contact_models = core::model_list<dem::TangentialLaw>();
 constinit const core::ModelList rolling_models = core::model_list<dem::RollingLaw>();
 constinit const core::ModelList drag_laws = core::model_list<coupling::DragLaw>();
-constinit const core::ModelList depositions = deposition_list;
+constinit const core::ModelList depositions = core::model_list<coupling::Deposition>();
 constinit const core::ModelList line_quantities = line_quantity_list;
 constinit const core::ModelList probe_quantities = probe_quantity_list;
 
