@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/model_variant.hpp"
 #include "dem/fill.hpp"
+#include "tools/pellicle/case_checks.hpp"
 
 namespace pellicle::tools {
 namespace {
@@ -32,30 +33,11 @@ dem::PlaneWall make_side(const CaseSpec& spec, const WallSpec& wall, cfd::Side s
   return plane;
 }
 
-std::vector<Real> radii_of(const CaseSpec& spec, const PopulationSpec& population) {
-  const Real radius = 0.5 * population.diameter;
-  const Real volume = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-  Real count = 0;
-  if (population.count) {
-    count = static_cast<Real>(*population.count);
-  } else if (population.total_mass) {
-    const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
-    count = std::round(*population.total_mass / (density * volume));
-  } else {
-    const FillSpec& fill = *population.fill;
-    const Real region = fill.box ? dem::region_volume(*fill.box)
-                                 : dem::region_volume(dem::CylinderRegion{
-                                       fill.cylinder->from, fill.cylinder->to, fill.cylinder->radius});
-    count = std::floor(*fill.solids_fraction * region / volume);
-  }
-  if (count > 2e9) throw InputError(population.where + ": more than 2e9 particles");
-  return std::vector<Real>(static_cast<std::size_t>(count), radius);
-}
-
 void add_filled(const CaseSpec& spec, const PopulationSpec& population, std::uint64_t seed,
                 std::vector<dem::ParticleSeed>& particles) {
   const FillSpec& fill = *population.fill;
-  const std::vector<Real> radii = radii_of(spec, population);
+  const std::vector<Real> radii(static_cast<std::size_t>(particle_count(spec, population)),
+                                0.5 * population.diameter);
   dem::FillRegion region;
   if (fill.box) region = *fill.box;
   if (fill.cylinder)
@@ -63,8 +45,7 @@ void add_filled(const CaseSpec& spec, const PopulationSpec& population, std::uin
   std::vector<dem::PlacedSphere> present;
   present.reserve(particles.size());
   for (const auto& p : particles) present.push_back({p.position, p.radius});
-  const auto pattern =
-      fill.pattern == FillPattern::lattice ? dem::FillPattern::lattice : dem::FillPattern::random;
+  const auto pattern = fill.pattern;
   const std::vector<Vec3> centres = dem::fill_region(region, pattern, radii, seed, present);
   if (centres.size() < radii.size()) {
     const Real radius = 0.5 * population.diameter;
@@ -101,6 +82,15 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
   for (const PairSpec& p : spec.contacts.pairs) {
     setup.pairs.push_back(
         {p.material_a, p.material_b, p.restitution, p.sliding_friction, p.rolling_friction});
+  }
+  // The table of pairs has no gaps: pairs that cannot meet, and that the case need not give, get any values.
+  for (int a = 0; a < static_cast<int>(spec.materials.size()); ++a) {
+    for (int b = a; b < static_cast<int>(spec.materials.size()); ++b) {
+      const bool given = std::any_of(
+          spec.contacts.pairs.begin(), spec.contacts.pairs.end(),
+          [&](const PairSpec& p) { return std::minmax(p.material_a, p.material_b) == std::minmax(a, b); });
+      if (!given && !can_meet(spec, a, b)) setup.pairs.push_back({a, b, 1, 0, 0});
+    }
   }
   choose_model(spec.contacts.normal, spec.where("contacts.model.normal"), setup.contacts.normal);
   choose_model(spec.contacts.tangential, spec.where("contacts.model.tangential"), setup.contacts.tangential);
@@ -147,19 +137,16 @@ std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec) {
   return particles;
 }
 
-CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {
-  return CartesianGrid(grid.faces, domain.periodic);
-}
-
 coupling::CouplingOptions make_coupling_options(const CaseSpec& spec) {
   const CouplingSpec& c = spec.coupling;
   coupling::CouplingOptions options;
   choose_model(c.drag, spec.where("coupling.drag"), options.drag);
   choose_model(c.deposition, spec.where("coupling.deposition"), options.deposition);
-  options.exchange = static_cast<coupling::Exchange>(c.exchange);
-  options.coefficients = static_cast<coupling::Coefficients>(c.coefficients);
+  options.exchange = c.exchange;
+  options.coefficients = c.coefficients;
   options.pressure_gradient_force = c.pressure_gradient_force;
   options.minimum_void_fraction = c.minimum_void_fraction;
+  options.pending_release = c.pending_release;
   return options;
 }
 

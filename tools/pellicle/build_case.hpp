@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "core/cartesian_grid.hpp"
 #include "coupling/coupling_options.hpp"
 #include "dem/engine.hpp"
 #include "tools/pellicle/case_spec.hpp"
@@ -15,9 +14,6 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step);
 
 /// All particles of the case, populations in the order of the file. Throws InputError if they do not fit.
 std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec);
-
-/// The gas grid with the domain's periodic directions.
-CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain);
 
 coupling::CouplingOptions make_coupling_options(const CaseSpec& spec);
 

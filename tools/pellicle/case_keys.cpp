@@ -16,6 +16,20 @@ using core::TextRule;
 namespace dimension = core::dimension;
 namespace range = core::range;
 
+void describe_corners(Keys& keys, Box& box, bool may_be_flat) {
+  keys.vector({"min", "corner with the smallest coordinates", Need::required}, {dimension::length}, box.min);
+  keys.vector({"max", "corner with the largest coordinates", Need::required}, {dimension::length}, box.max);
+  if (!keys.reading() || !keys.given("min") || !keys.given("max")) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(box.max[axis] > box.min[axis]) && !(may_be_flat && box.max[axis] == box.min[axis])) {
+      keys.problem("max",
+                   fmt::format("{} m is not beyond min {} m along {}; larger coordinates than those of min",
+                               box.max[axis], box.min[axis], "xyz"[axis]));
+      return;
+    }
+  }
+}
+
 void describe_domain(Keys& keys, DomainSpec& domain) {
   describe_box(keys, domain.box);
   std::vector<int> periodic;
@@ -52,19 +66,8 @@ void describe_time(Keys& keys, TimeSpec& time) {
 
 }  // namespace
 
-void describe_box(Keys& keys, Box& box) {
-  keys.vector({"min", "corner with the smallest coordinates", Need::required}, {dimension::length}, box.min);
-  keys.vector({"max", "corner with the largest coordinates", Need::required}, {dimension::length}, box.max);
-  if (!keys.reading() || !keys.given("min") || !keys.given("max")) return;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(box.max[axis] > box.min[axis])) {
-      keys.problem("max",
-                   fmt::format("{} m is not beyond min {} m along {}; larger coordinates than those of min",
-                               box.max[axis], box.min[axis], "xyz"[axis]));
-      return;
-    }
-  }
-}
+void describe_box(Keys& keys, Box& box) { describe_corners(keys, box, false); }
+void describe_flat_box(Keys& keys, Box& box) { describe_corners(keys, box, true); }
 
 void real_or_unset(Keys& keys, const Key& key, const core::RealRule& rule, Real& value) {
   std::optional<Real> held;

@@ -22,6 +22,8 @@ void describe_output(core::Keys& keys, CaseSpec& spec);
 
 /// Two opposite corners, with `max` beyond `min` in every direction.
 void describe_box(core::Keys& keys, Box& box);
+/// The same, but `max` may also be level with `min`: a part of a side.
+void describe_flat_box(core::Keys& keys, Box& box);
 /// A number for which 0 stands for "not given".
 void real_or_unset(core::Keys& keys, const core::Key& key, const core::RealRule& rule, Real& value);
 /// The name of a material for its index; one that is not known becomes a rigid one or is refused.

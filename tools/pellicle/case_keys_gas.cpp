@@ -116,7 +116,7 @@ void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
   keys.section<cfd::BoundaryPatch>(
       {"region", "the part of the side", Need::has_default, "what no other region of the side takes"}, region,
       [](Keys& inner, cfd::BoundaryPatch& held) {
-        inner.section<Box>({"box", "the part of the side inside this box"}, held.region, describe_box);
+        inner.section<Box>({"box", "the part of the side inside this box"}, held.region, describe_flat_box);
         inner.exactly_one({"box"});
       });
   if (keys.reading() && region) patch.region = region->region;
@@ -198,13 +198,12 @@ void describe_coupling(Keys& keys, CaseSpec& spec) {
   std::optional<CouplingSpec> held;
   if (!keys.reading() && spec.gas && !spec.particles.empty()) held = spec.coupling;
   keys.section<CouplingSpec>(
-      {"coupling", "how gas and particles act on each other"}, held,
-      [&](Keys& inner, CouplingSpec& coupling) {
-        inner.choice({"drag", "law of the drag force"}, drag_laws, coupling.drag);
+      {"coupling", "how gas and particles act on each other"}, held, [&](Keys& inner, CouplingSpec& options) {
+        inner.choice({"drag", "law of the drag force"}, drag_laws, options.drag);
         inner.choice({"deposition", "how a particle's volume is shared among cells"}, depositions,
-                     coupling.deposition);
+                     options.deposition);
         std::optional<GridSpec> grid;
-        if (coupling.transfer_grid.cells.x > 0) grid = coupling.transfer_grid;
+        if (options.transfer_grid.cells.x > 0) grid = options.transfer_grid;
         inner.section<GridSpec>(
             {"transfer_grid", "cells in which the void fraction is counted", Need::has_default,
              "the gas grid"},
@@ -226,17 +225,21 @@ void describe_coupling(Keys& keys, CaseSpec& spec) {
                 transfer.cells[axis] = std::max(Index{1}, static_cast<Index>(cells));
               }
             });
-        if (inner.reading() && grid) coupling.transfer_grid = *grid;
-        inner.choice({"exchange", "how the gas gets the momentum that particles lose"}, exchanges,
-                     coupling.exchange);
+        if (inner.reading() && grid) options.transfer_grid = *grid;
+        inner.choice({"exchange", "how the gas gets the momentum that particles lose"},
+                     coupling::exchange_models, options.exchange);
         inner.flag({"pressure_gradient_force", "particles feel the gradient of the gas pressure"},
-                   coupling.pressure_gradient_force);
+                   options.pressure_gradient_force);
         inner.choice({"coefficients", "how often the momentum exchange coefficients are computed"},
-                     coefficients, coupling.coefficients);
+                     coupling::coefficients_models, options.coefficients);
         inner.real({"minimum_void_fraction",
                     "where particles leave less, the excess is spread to neighbouring cells"},
                    {dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true, .max_excluded = true}},
-                   coupling.minimum_void_fraction);
+                   options.minimum_void_fraction);
+        inner.real(
+            {"pending_release",
+             "share of the momentum carried over that the gas gets back a step; large ones are unstable"},
+            {dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true}}, options.pending_release);
       });
   if (keys.reading() && held) spec.coupling = *held;
 }

@@ -3,8 +3,12 @@
 namespace pellicle::tools {
 
 std::string CaseSpec::where(const std::string& path) const {
-  const auto found = lines.find(path);
-  return (found != lines.end() ? found->second : file) + ": " + path;
+  for (std::string given = path;;) {
+    if (const auto found = lines.find(given); found != lines.end()) return found->second + ": " + path;
+    const auto dot = given.rfind('.');
+    if (dot == std::string::npos) return file + ":1: " + path;
+    given.resize(dot);
+  }
 }
 
 CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {

@@ -14,6 +14,8 @@
 #include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
+#include "coupling/coupling_options.hpp"
+#include "dem/fill.hpp"
 
 namespace pellicle::tools {
 
@@ -67,13 +69,11 @@ struct CylinderSpec {
   Real radius = 0;  ///< [m]
 };
 
-enum class FillPattern { lattice, random };
-
 struct FillSpec {
   std::string where;
   std::optional<Box> box;  ///< exactly one of box and cylinder
   std::optional<CylinderSpec> cylinder;
-  FillPattern pattern = FillPattern::random;
+  dem::FillPattern pattern = dem::FillPattern::random;
   std::optional<Real> solids_fraction;  ///< how many particles, when neither count nor total_mass is given
 };
 
@@ -130,17 +130,15 @@ struct GasSpec {
   std::vector<cfd::BoundaryPatch> boundaries;  ///< what none of them takes is a no-slip wall
 };
 
-enum class Coefficients { gas_step, substep };
-enum class Exchange { implicit, explicit_, one_way };
-
 struct CouplingSpec {
   std::string drag = "beetstra";       ///< a name in the list of coupling::DragLaw
   std::string deposition = "divided";  ///< a name in the list of coupling::Deposition
   GridSpec transfer_grid;              ///< default: the gas grid
-  Exchange exchange = Exchange::implicit;
+  coupling::Exchange exchange = coupling::Exchange::implicit;
   bool pressure_gradient_force = true;
-  Coefficients coefficients = Coefficients::gas_step;
+  coupling::Coefficients coefficients = coupling::Coefficients::gas_step;
   Real minimum_void_fraction = 0.36;
+  Real pending_release = 0.1;  ///< share of the carried momentum that the gas gets back a step
 };
 
 /// An interval of simulated time; both ends are filled in.
@@ -214,7 +212,8 @@ struct CaseSpec {
   std::map<std::string, std::string>
       lines;  ///< key path -> `file:line` (or `--set`), of every key that was given
 
-  /// `file:line: key.path` of a key such as `time.gas_step`, for messages; without a line if it was not given.
+  /// `file:line: key.path` of a key such as `time.gas_step`, for messages; the line is that of the section if the key
+  /// was not given.
   std::string where(const std::string& path) const;
 };
 

@@ -39,8 +39,6 @@ constexpr auto probe_quantity_list = join(line_quantity_list, bed_quantities);
 constinit const core::ModelList axes = axis_list;
 constinit const core::ModelList domain_sides = side_list;
 constinit const core::ModelList fill_patterns = fill_pattern_list;
-constinit const core::ModelList exchanges = coupling::exchange_models;
-constinit const core::ModelList coefficients = coupling::coefficients_models;
 constinit const core::ModelList normal_contact_models = core::model_list<dem::NormalLaw>();
 constinit const core::ModelList tangential_contact_models = core::model_list<dem::TangentialLaw>();
 constinit const core::ModelList rolling_models = core::model_list<dem::RollingLaw>();
@@ -58,8 +56,9 @@ const std::vector<ModelFamily>& model_families() {
       {"gas.convection", "Convection schemes of the gas", cfd::convection_models},
       {"coupling.drag", "Drag laws", drag_laws},
       {"coupling.deposition", "Ways to share a particle's volume among cells", depositions},
-      {"coupling.exchange", "Momentum exchange between gas and particles", exchanges},
-      {"coupling.coefficients", "How often momentum exchange coefficients are computed", coefficients},
+      {"coupling.exchange", "Momentum exchange between gas and particles", coupling::exchange_models},
+      {"coupling.coefficients", "How often momentum exchange coefficients are computed",
+       coupling::coefficients_models},
   };
   return families;
 }

@@ -93,6 +93,7 @@ void Simulation::resume() {
 }
 
 int Simulation::run() {
+  for (const std::string& warning : spec_.warnings) core::log().warn("{}", warning);
   for (const std::string& message : time_.messages()) core::log().warn("{}", message);
   wall_begin_ = core::wall_clock();
   core::Progress progress(time_.time(), time_.end());

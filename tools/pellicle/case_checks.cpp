@@ -1,0 +1,332 @@
+#include "tools/pellicle/case_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "core/time_control.hpp"
+#include "tools/pellicle/model_families.hpp"
+#include "tools/pellicle/output_fields.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+/// Largest solids fractions that a fill can reach: where random placing of spheres one after the other jams, and a
+/// simple cubic lattice of touching spheres.
+constexpr Real random_limit = 0.384;
+constexpr Real lattice_limit = std::numbers::pi / 6;
+
+class Checker {
+ public:
+  Checker(CaseSpec& spec, core::InputProblems& problems) : spec_(spec), problems_(problems) {}
+
+  void check_all() {
+    if (!spec_.gas && spec_.particles.empty()) {
+      problems_.add(spec_.file + ":1", "there is nothing to simulate; particles, gas, or both");
+      return;
+    }
+    check_names();
+    check_steps();
+    if (!spec_.particles.empty()) check_particles();
+    check_sides();
+    if (spec_.gas && !spec_.particles.empty()) check_transfer_grid();
+    for (const auto& line : spec_.output.lines) check_line(line);
+    for (const auto& probe : spec_.output.probes) check_probe(probe);
+    for (const auto& histogram : spec_.output.histograms) {
+      if (spec_.particles.empty())
+        wrong(histogram.where, "quantity", "a case without particles has none; no histograms");
+    }
+    warn_of_unused();
+  }
+
+ private:
+  /// Reports a key of the entry whose place is `where`.
+  void wrong(const std::string& where, std::string_view key, const std::string& what) {
+    problems_.add(spec_.where(fmt::format("{}.{}", path_of(where), key)), what);
+  }
+  void wrong_key(const std::string& path, const std::string& what) { problems_.add(spec_.where(path), what); }
+  void warn(const std::string& path, const std::string& what) {
+    spec_.warnings.push_back(spec_.where(path) + ": " + what);
+  }
+  static std::string path_of(const std::string& where) { return where.substr(where.rfind(": ") + 2); }
+  static std::string text(const Vec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+  std::string domain_text() const {
+    return fmt::format("within {} to {} m", text(spec_.domain.box.min), text(spec_.domain.box.max));
+  }
+  bool inside(const Vec3& point) const {
+    const Box& box = spec_.domain.box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Real slack = 1e-9 * (box.max[axis] - box.min[axis]);
+      if (point[axis] < box.min[axis] - slack || point[axis] > box.max[axis] + slack) return false;
+    }
+    return true;
+  }
+
+  template <class Entries, class NameAndWhere>
+  void check_unique(const Entries& entries, const NameAndWhere& name_and_where) {
+    std::set<std::string> names;
+    for (const auto& entry : entries) {
+      const auto& [name, where] = name_and_where(entry);
+      if (!names.insert(name).second) {
+        problems_.add(where, fmt::format("another one is called {} already; a name of its own", name));
+      }
+    }
+  }
+
+  void check_names() {
+    const auto name_and_where = [](const auto& entry) { return std::pair(entry.name, entry.where); };
+    check_unique(spec_.walls, name_and_where);
+    if (spec_.gas) check_unique(spec_.gas->boundaries, name_and_where);
+    check_unique(spec_.output.lines, name_and_where);
+    check_unique(spec_.output.probes, name_and_where);
+    check_unique(spec_.output.histograms, name_and_where);
+  }
+
+  void check_steps() {
+    const TimeSpec& time = spec_.time;
+    if (time.gas_step > time.end) {
+      wrong_key("time.gas_step",
+                fmt::format("{:g} s is longer than time.end {:g} s; at most that", time.gas_step, time.end));
+    }
+    if (!core::whole_multiple(time.gas_step, time.particle_step)) {
+      wrong_key("time.particle_step",
+                fmt::format("{:g} s does not divide the gas step of {:g} s; gas_step over a whole number",
+                            time.particle_step, time.gas_step));
+    }
+    if (spec_.particles.empty()) return;
+    const StepBound bound = particle_step_bound(spec_);
+    if (time.particle_step <= bound.bound) return;
+    const std::string what = fmt::format(
+        "{:g} s is over the bound of {:.3g} s (a fifth of the Rayleigh time {:.3g} s, a twentieth of the "
+        "contact time "
+        "{:.3g} s at {:g} m/s)",
+        time.particle_step, bound.bound, bound.rayleigh_time, bound.contact_time, time.impact_speed);
+    if (time.allow_large_step) {
+      warn("time.particle_step", what + ": contacts may blow up");
+    } else {
+      wrong_key("time.particle_step", what + "; at most the bound, or time.allow_large_step: true");
+    }
+  }
+
+  void check_particles() {
+    check_pairs();
+    for (const auto& population : spec_.particles) {
+      if (population.fill) check_fill(population);
+      for (std::size_t i = 0; i < population.list.size(); ++i) check_listed(population, i);
+    }
+    if (particle_count(spec_) > std::numeric_limits<Index>::max()) {
+      wrong_key("particles", fmt::format("they are {}; at most {}", particle_count(spec_),
+                                         std::numeric_limits<Index>::max()));
+    }
+  }
+
+  void check_pairs() {
+    std::set<std::pair<int, int>> given;
+    for (const auto& pair : spec_.contacts.pairs) {
+      const auto both = std::minmax(pair.material_a, pair.material_b);
+      if (!given.insert(both).second) {
+        wrong(pair.where, "between",
+              fmt::format("{} and {} have a pair already; each pair once", material(both.first),
+                          material(both.second)));
+      }
+    }
+    const int materials = static_cast<int>(spec_.materials.size());
+    for (int a = 0; a < materials; ++a) {
+      for (int b = a; b < materials; ++b) {
+        if (can_meet(spec_, a, b) && !given.contains({a, b})) {
+          wrong_key("contacts.pairs",
+                    fmt::format("no pair for {} and {}, which can meet; an entry with between: [{}, {}]",
+                                material(a), material(b), material(a), material(b)));
+        }
+      }
+    }
+  }
+  const std::string& material(int index) const {
+    return spec_.materials[static_cast<std::size_t>(index)].name;
+  }
+
+  void check_fill(const PopulationSpec& population) {
+    const FillSpec& fill = *population.fill;
+    if (fill.box && !(inside(fill.box->min) && inside(fill.box->max))) {
+      wrong(fill.where, "box", "it reaches out of the domain; " + domain_text());
+    }
+    if (fill.cylinder && !(inside(fill.cylinder->from) && inside(fill.cylinder->to))) {
+      wrong(fill.where, "cylinder", "its axis reaches out of the domain; " + domain_text());
+    }
+    const std::int64_t count = particle_count(spec_, population);
+    if (count < 1) {
+      problems_.add(population.where,
+                    "it comes to no particle at all; a mass or solids fraction of at least one particle");
+      return;
+    }
+    const Real d = population.diameter;
+    const Real fraction = static_cast<Real>(count) * std::numbers::pi / 6 * d * d * d / region_volume(fill);
+    const bool lattice = fill.pattern == dem::FillPattern::lattice;
+    const Real limit = lattice ? lattice_limit : random_limit;
+    if (fraction > limit) {
+      problems_.add(
+          fill.where,
+          fmt::format(
+              "{} particles do not fit: they would take {:.3g} of the region's volume; at most {:.3g} with "
+              "pattern {}",
+              count, fraction, limit, lattice ? "lattice" : "random"));
+    }
+  }
+
+  void check_listed(const PopulationSpec& population, std::size_t i) {
+    const std::string path = fmt::format("{}.list.{}", path_of(population.where), i);
+    const Vec3& position = population.list[i].position;
+    if (!inside(position)) {
+      wrong_key(path + ".position",
+                fmt::format("{} m is outside the domain; {}", text(position), domain_text()));
+    }
+    for (const auto& wall : spec_.walls) {
+      if (wall.plane && dot(position - wall.plane->point, wall.plane->normal) <= 0) {
+        wrong_key(path + ".position",
+                  fmt::format("{} m is behind the wall {}; on the side its normal points to", text(position),
+                              wall.name));
+      }
+    }
+  }
+
+  bool periodic(cfd::Side side) const {
+    return spec_.domain.periodic[static_cast<std::size_t>(cfd::axis_of(side))];
+  }
+
+  void check_sides() {
+    for (const auto& wall : spec_.walls) {
+      for (const cfd::Side side : wall.open) {
+        if (periodic(side)) {
+          wrong(wall.where, "open",
+                fmt::format("{} is a periodic side, which has no wall; sides that are not periodic",
+                            side_name(side)));
+        }
+      }
+      if (!wall.box) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (wall.velocity[axis] == 0 || spec_.domain.periodic[static_cast<std::size_t>(axis)]) continue;
+        for (const cfd::Side side :
+             {static_cast<cfd::Side>(2 * axis), static_cast<cfd::Side>(2 * axis + 1)}) {
+          if (std::find(wall.open.begin(), wall.open.end(), side) == wall.open.end()) {
+            wrong(wall.where, "velocity",
+                  fmt::format("it leads through the {} side; a velocity along all closed sides, or a plane",
+                              side_name(side)));
+            break;
+          }
+        }
+      }
+    }
+    if (!spec_.gas) return;
+    for (const auto& patch : spec_.gas->boundaries) {
+      if (periodic(patch.on)) {
+        wrong(patch.where, "on",
+              fmt::format("{} is a periodic side; sides that are not periodic", side_name(patch.on)));
+      }
+      if (patch.region && !(inside(patch.region->min) && inside(patch.region->max))) {
+        wrong(patch.where, "region", "it reaches out of the domain; " + domain_text());
+      }
+    }
+  }
+  static std::string_view side_name(cfd::Side side) {
+    return domain_sides[static_cast<std::size_t>(side)].name;
+  }
+
+  void check_transfer_grid() {
+    const CartesianGrid grid = make_grid(spec_.coupling.transfer_grid, spec_.domain);
+    const Real diameter = diameter_range(spec_).largest;
+    for (int axis = 0; axis < 3; ++axis) {
+      Real narrowest = grid.width(axis, 0);
+      for (Index i = 1; i < grid.cells()[axis]; ++i) narrowest = std::min(narrowest, grid.width(axis, i));
+      if (narrowest < diameter) {
+        warn("coupling.transfer_grid", fmt::format("cells of {:.3g} m along {} are smaller than a particle "
+                                                   "of {:.3g} m: the void fraction will be "
+                                                   "ragged",
+                                                   narrowest, "xyz"[axis], diameter));
+      }
+    }
+  }
+
+  /// A quantity can be shown only if what it belongs to is there.
+  void check_quantity(const std::string& where, std::string_view key, const std::string& name) {
+    const bool of_gas = core::find_model(gas_quantities, name) >= 0;
+    if (of_gas && !spec_.gas)
+      wrong(where, key,
+            fmt::format("{} needs gas, which the case has not; {}", name,
+                        core::allowed_names(particle_quantities)));
+    if (!of_gas && spec_.particles.empty()) {
+      wrong(where, key,
+            fmt::format("{} needs particles, which the case has not; {}", name,
+                        core::allowed_names(gas_quantities)));
+    }
+  }
+
+  void check_line(const LineSpec& line) {
+    if (!inside(line.from))
+      wrong(line.where, "from",
+            fmt::format("{} m is outside the domain; {}", text(line.from), domain_text()));
+    if (!inside(line.to))
+      wrong(line.where, "to", fmt::format("{} m is outside the domain; {}", text(line.to), domain_text()));
+    check_quantity(line.where, "quantity", line.quantity);
+    const Vec3 along = line.to - line.from;
+    if (line.depth_average && std::abs(along[*line.depth_average]) > 1e-9 * norm(along)) {
+      wrong(line.where, "depth_average",
+            "the line runs along that direction; one at right angles to the line");
+    }
+    if (!(line.average.to > line.average.from)) {
+      wrong(line.where, "average",
+            fmt::format("from {:g} to {:g} s is no time; to later than from", line.average.from,
+                        line.average.to));
+    } else if (line.average.from >= spec_.time.end) {
+      wrong(line.where, "average",
+            fmt::format("it begins at {:g} s, after the end of the run; before {:g} s", line.average.from,
+                        spec_.time.end));
+    }
+  }
+
+  void check_probe(const ProbeSpec& probe) {
+    if (probe.point) {
+      if (!spec_.gas)
+        wrong(probe.where, "point", "a point shows the gas, which the case has not; particle or bed");
+      if (!inside(*probe.point)) {
+        wrong(probe.where, "point",
+              fmt::format("{} m is outside the domain; {}", text(*probe.point), domain_text()));
+      }
+    } else if (spec_.particles.empty()) {
+      wrong(probe.where, probe.bed ? "bed" : "particle", "the case has no particles; point");
+    } else if (probe.particle && *probe.particle >= particle_count(spec_)) {
+      wrong(probe.where, "particle",
+            fmt::format("there is no particle {}; 0 to {}", *probe.particle, particle_count(spec_) - 1));
+    }
+  }
+
+  /// Keys that say nothing in this case.
+  void warn_of_unused() {
+    const auto given = [&](const std::string& path) { return spec_.lines.contains(path); };
+    const auto unused = [&](const std::string& path, std::string_view why) {
+      if (given(path)) warn(path, fmt::format("of no use: the case has no {}", why));
+    };
+    if (spec_.particles.empty()) {
+      for (const auto* path : {"time.particle_step", "time.impact_speed", "time.settle", "materials", "walls",
+                               "contacts", "coupling", "output.snapshots.particles"}) {
+        unused(path, "particles");
+      }
+    } else if (!spec_.gas) {
+      unused("coupling", "gas");
+      unused("output.snapshots.gas", "gas");
+    }
+  }
+
+  CaseSpec& spec_;
+  core::InputProblems& problems_;
+};
+
+}  // namespace
+
+void check_case(CaseSpec& spec, core::InputProblems& problems) { Checker(spec, problems).check_all(); }
+
+}  // namespace pellicle::tools

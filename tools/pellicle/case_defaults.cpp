@@ -1,0 +1,68 @@
+#include "tools/pellicle/case_defaults.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/pellicle/case_file.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+constexpr Real particle_steps_without_gas = 10;
+constexpr Real least_impact_speed = 1;  // [m/s]
+
+void fill_in_time(CaseSpec& spec, core::InputProblems& problems) {
+  TimeSpec& time = spec.time;
+  const bool with_particles = !spec.particles.empty();
+  if (spec.gas && time.gas_step == 0) {
+    problems.add(spec.where("time.gas_step"), "missing; with gas a time greater than 0 s");
+  }
+  if (with_particles && time.particle_step == 0) {
+    problems.add(spec.where("time.particle_step"), "missing; with particles a time greater than 0 s");
+  }
+  if (!problems.empty()) return;
+  if (time.gas_step == 0) time.gas_step = particle_steps_without_gas * time.particle_step;
+  if (time.particle_step == 0) time.particle_step = time.gas_step;
+  if (time.impact_speed == 0) {
+    time.impact_speed = least_impact_speed;
+    for (const auto& population : spec.particles) {
+      time.impact_speed = std::max(time.impact_speed, norm(population.velocity));
+      for (const auto& particle : population.list) {
+        time.impact_speed = std::max(time.impact_speed, norm(particle.velocity));
+      }
+    }
+  }
+}
+
+/// Size of the gas cell in the middle of the line, across it; the larger of two.
+Real default_thickness(const CaseSpec& spec, const LineSpec& line) {
+  const Vec3 along = line.to - line.from;
+  if (!spec.gas) return norm(along) / static_cast<Real>(line.points);
+  const CartesianGrid grid = make_grid(spec.gas->grid, spec.domain);
+  Vec3 widths;
+  int line_axis = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    widths[axis] = grid.width(axis, grid.locate(axis, 0.5 * (line.from[axis] + line.to[axis])));
+    if (std::abs(along[axis]) > std::abs(along[line_axis])) line_axis = axis;
+  }
+  Real thickness = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis != line_axis && axis != line.depth_average) thickness = std::max(thickness, widths[axis]);
+  }
+  return thickness;
+}
+
+}  // namespace
+
+void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
+  if (spec.title.empty()) spec.title = case_name(spec.file);
+  fill_in_time(spec, problems);
+  if (spec.gas && spec.coupling.transfer_grid.cells.x == 0) spec.coupling.transfer_grid = spec.gas->grid;
+  for (auto& line : spec.output.lines) {
+    if (line.thickness == 0) line.thickness = default_thickness(spec, line);
+    if (line.average.to == 0) line.average.to = spec.time.end;
+  }
+}
+
+}  // namespace pellicle::tools

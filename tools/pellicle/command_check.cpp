@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/time_control.hpp"
+#include "tools/pellicle/case_checks.hpp"
+#include "tools/pellicle/case_file.hpp"
+#include "tools/pellicle/commands.hpp"
+#include "tools/pellicle/model_families.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+/// Lines of "what   value".
+class Facts {
+ public:
+  template <class... Args>
+  void add(std::string_view what, fmt::format_string<Args...> format, Args&&... args) {
+    text_ += fmt::format("  {:<16} {}\n", what, fmt::format(format, std::forward<Args>(args)...));
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string millimetres(Real length) { return fmt::format("{:.4g}", 1e3 * length); }
+
+void add_particles(Facts& facts, const CaseSpec& spec) {
+  Real mass = 0;
+  for (const auto& population : spec.particles) {
+    const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
+    const auto sphere = [&](Real d) { return density * std::numbers::pi / 6 * d * d * d; };
+    if (population.fill)
+      mass += static_cast<Real>(particle_count(spec, population)) * sphere(population.diameter);
+    for (const auto& particle : population.list) mass += sphere(particle.diameter);
+  }
+  const DiameterRange diameters = diameter_range(spec);
+  const std::string size = diameters.smallest == diameters.largest
+                               ? millimetres(diameters.smallest)
+                               : millimetres(diameters.smallest) + " to " + millimetres(diameters.largest);
+  facts.add("particles", "{}, diameter {} mm, {:.4g} kg in all", particle_count(spec), size, mass);
+  const StepBound bound = particle_step_bound(spec);
+  facts.add("particle step", "{:g} s, {:.0f} % of the bound {:.3g} s at impacts of {:g} m/s",
+            spec.time.particle_step, 100 * spec.time.particle_step / bound.bound, bound.bound,
+            spec.time.impact_speed);
+}
+
+/// Largest speed of the gas at an inlet [m/s], and its Courant number there.
+void add_inlets(Facts& facts, const CaseSpec& spec, const CartesianGrid& grid) {
+  for (const auto& patch : spec.gas->boundaries) {
+    const auto* inlet = std::get_if<cfd::Inlet>(&patch.kind);
+    if (inlet == nullptr) continue;
+    const int axis = cfd::axis_of(patch.on);
+    const Box& box = spec.domain.box;
+    Real area = 1;
+    for (int a = 0; a < 3; ++a) {
+      if (a == axis) continue;
+      const Real low = patch.region ? std::max(box.min[a], patch.region->min[a]) : box.min[a];
+      const Real high = patch.region ? std::min(box.max[a], patch.region->max[a]) : box.max[a];
+      area *= high - low;
+    }
+    // Without region other boundaries of the side take a part: then only a velocity says how fast the gas is.
+    if (!inlet->velocity && !patch.region) continue;
+    const Real velocity = inlet->velocity ? *inlet->velocity : *inlet->flow_rate / area;
+    const Real width = grid.width(axis, cfd::is_max(patch.on) ? grid.cells()[axis] - 1 : 0);
+    facts.add("inlet " + patch.name, "{:.4g} m/s, Courant number {:.3g} at the inlet", velocity,
+              velocity * spec.time.gas_step / width);
+  }
+}
+
+std::string cells_text(const CartesianGrid& grid) {
+  Vec3 least = {1e300, 1e300, 1e300}, most{};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (Index i = 0; i < grid.cells()[axis]; ++i) {
+      least[axis] = std::min(least[axis], grid.width(axis, i));
+      most[axis] = std::max(most[axis], grid.width(axis, i));
+    }
+  }
+  const auto range = [&](int axis) {
+    return grid.uniform(axis) ? millimetres(least[axis])
+                              : millimetres(least[axis]) + "-" + millimetres(most[axis]);
+  };
+  return fmt::format("{} x {} x {} = {} cells of {} x {} x {} mm", grid.cells().x, grid.cells().y,
+                     grid.cells().z, grid.cell_count(), range(0), range(1), range(2));
+}
+
+}  // namespace
+
+std::string describe_case_text(const CaseSpec& spec) {
+  Facts facts;
+  const Vec3 size = spec.domain.box.max - spec.domain.box.min;
+  facts.add("domain", "{} x {} x {} mm", millimetres(size.x), millimetres(size.y), millimetres(size.z));
+  facts.add("time", "{:g} s in {:.0f} outer steps of {:g} s{}", spec.time.end,
+            spec.time.end / spec.time.gas_step, spec.time.gas_step,
+            spec.particles.empty() ? "" : fmt::format(", each of {} particle steps", spec.time.substeps()));
+  if (!spec.particles.empty()) add_particles(facts, spec);
+  if (spec.gas) {
+    const CartesianGrid grid = make_grid(spec.gas->grid, spec.domain);
+    facts.add("gas grid", "{}", cells_text(grid));
+    add_inlets(facts, spec, grid);
+    facts.add("convection", "{}",
+              cfd::convection_models[static_cast<std::size_t>(spec.gas->options.convection)].name);
+  }
+  if (spec.gas && !spec.particles.empty()) {
+    facts.add("drag", "{}", spec.coupling.drag);
+    facts.add("transfer grid", "{}", cells_text(make_grid(spec.coupling.transfer_grid, spec.domain)));
+  }
+  facts.add("output", "{} lines, {} probes, {} histograms", spec.output.lines.size(),
+            spec.output.probes.size(), spec.output.histograms.size());
+  return fmt::format("{}\n{}", spec.title, facts.text());
+}
+
+int check_command(const std::string& case_file, const std::vector<std::string>& overrides) {
+  const CaseSpec spec = load_case(case_file, overrides);
+  fmt::print("{}", describe_case_text(spec));
+  for (const auto& warning : spec.warnings) fmt::print("warning: {}\n", warning);
+  fmt::print("{}: nothing wrong\n", case_file);
+  return 0;
+}
+
+}  // namespace pellicle::tools
