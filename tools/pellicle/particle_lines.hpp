@@ -34,6 +34,7 @@ class ParticleLine {
   int quantity_;
   DeviceArray<std::int64_t> samples_;
   DeviceArray<Real> sum_, square_;
+  DeviceArray<Index> bin_of_;   ///< bin of each particle or -1
   DeviceArray<Index> hit_bin_;  ///< of the particles in the line, in their order
   DeviceArray<Real> hit_value_;
 };
