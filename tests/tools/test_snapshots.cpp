@@ -42,7 +42,7 @@ TEST(ParticleSnapshots, FieldsInTheOrderOfIds) {
   snapshots.write(0, 0, some_particles(3));
   snapshots.write(500, 0.05, some_particles(2));
   const core::Hdf5File file(folder / "particles.h5", core::Hdf5File::Mode::read);
-  EXPECT_EQ(file.members("/"), (std::vector<std::string>{"step0000000000", "step0000000500"}));
+  EXPECT_EQ(file.members("/"), (std::vector<std::string>{"rows", "step0000000000", "step0000000500"}));
   EXPECT_EQ(file.attribute_double("step0000000500", "time"), 0.05);
   EXPECT_EQ(file.attribute_int64("step0000000500", "step"), 500);
   EXPECT_EQ(file.read<std::int32_t>("step0000000000/id"), (std::vector<std::int32_t>{0, 1, 2}));
@@ -68,13 +68,17 @@ TEST(ParticleSnapshots, ResumeDropsLaterSteps) {
   {
     const core::Hdf5File file(folder / "particles.h5", core::Hdf5File::Mode::read);
     EXPECT_EQ(file.members("/"),
-              (std::vector<std::string>{"step0000000000", "step0000000100", "step0000000200"}));
+              (std::vector<std::string>{"rows", "step0000000000", "step0000000100", "step0000000200"}));
     EXPECT_EQ(file.shape("step0000000200/id"), (std::vector<std::size_t>{7}));
   }
   const std::string xdmf = core::read_file(folder / "particles.xdmf");
   EXPECT_EQ(count_of(xdmf, "<Time Value"), 3);
   EXPECT_EQ(count_of(xdmf, "Name=\"speed\""), 1);
   EXPECT_EQ(count_of(xdmf, "NumberOfElements=\"7\""), 1);
+  EXPECT_EQ(
+      count_of(xdmf,
+               "Dimensions=\"7\" NumberType=\"Int\" Precision=\"4\" Format=\"HDF\">particles.h5:/rows<"),
+      3);
   EXPECT_EQ(count_of(xdmf, folder.path().string()), 0);  // paths are relative
   // A new run begins new files.
   ParticleSnapshots snapshots(folder.path(), {"id"});
@@ -93,7 +97,7 @@ TEST(ParticleSnapshots, HalfWrittenStepIsDropped) {
   }
   ParticleSnapshots snapshots(folder.path(), {"id"}, 100);
   const core::Hdf5File file(folder / "particles.h5", core::Hdf5File::Mode::read);
-  EXPECT_EQ(file.members("/"), (std::vector<std::string>{"step0000000100"}));
+  EXPECT_EQ(file.members("/"), (std::vector<std::string>{"rows", "step0000000100"}));
 }
 
 TEST(ParticleSnapshots, DamagedFileIsKeptAside) {
@@ -103,7 +107,7 @@ TEST(ParticleSnapshots, DamagedFileIsKeptAside) {
   snapshots.write(200, 0.2, some_particles(1));
   EXPECT_EQ(core::read_file(folder / "particles.h5.damaged"), "not HDF5");
   const core::Hdf5File file(folder / "particles.h5", core::Hdf5File::Mode::read);
-  EXPECT_EQ(file.members("/").size(), 1u);
+  EXPECT_EQ(file.members("/").size(), 2u);
 }
 
 // A child that does nothing else than writing snapshots is killed: what the XDMF file names can be read.

@@ -62,13 +62,18 @@ void SnapshotSeries::resume(std::int64_t step) {
   }
   file.close();
   std::sort(records_.begin(), records_.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
-  write_xdmf();
 }
 
 void SnapshotSeries::write_once(const std::string& name, const std::function<void(core::Hdf5File&)>& write) {
   core::Hdf5File file(h5_, core::Hdf5File::Mode::append);
   if (!file.has(name)) write(file);
   file.close();
+}
+
+std::vector<std::size_t> SnapshotSeries::shape(const std::string& name) const {
+  if (!std::filesystem::exists(h5_)) return {};
+  const core::Hdf5File file(h5_, core::Hdf5File::Mode::read);
+  return file.has(name) ? file.shape(name) : std::vector<std::size_t>{};
 }
 
 void SnapshotSeries::add(std::int64_t step, Real time,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/hdf5_file.hpp"
@@ -26,21 +27,30 @@ std::string attribute(const SnapshotArray& array, const std::string& h5_path, co
 
 // --- particles -------------------------------------------------------------------------------------------------
 
-/// A cloud of points. An empty one gets a single point without data, since readers refuse a grid of nothing.
-std::string describe_particles(const std::string& h5_name, const SnapshotRecord& record) {
+constexpr const char* rows_name = "rows";
+
+/// A cloud of points. One of ParaView's readers takes a cloud for points, the other draws nothing unless each point is
+/// named by a connectivity: the first rows of a data set that all snapshots share. An empty cloud gets one point
+/// without data, since readers refuse a grid of nothing.
+std::string describe_particles(const std::string& h5_name, const SnapshotRecord& record, std::size_t rows) {
   const std::string base = h5_name + ":/" + record.group + "/";
   std::size_t count = 0;
   for (const auto& array : record.arrays) {
     if (array.name == "position") count = array.shape.front();
   }
   if (count == 0) {
-    return "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"1\"/>\n<Geometry GeometryType=\"XYZ\">\n"
-           "<DataItem Dimensions=\"1 3\" Format=\"XML\">0 0 0</DataItem>\n</Geometry>\n";
+    return "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"1\" NodesPerElement=\"1\">\n"
+           "<DataItem Dimensions=\"1\" NumberType=\"Int\" Format=\"XML\">0</DataItem>\n</Topology>\n"
+           "<Geometry GeometryType=\"XYZ\">\n<DataItem Dimensions=\"1 3\" Format=\"XML\">0 0 0</DataItem>\n"
+           "</Geometry>\n";
   }
   std::string text = fmt::format(
-      "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>\n<Geometry GeometryType=\"XYZ\">\n{}"
-      "</Geometry>\n",
-      count, data_item(base + "position", {count, 3}, false));
+      "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{0}\" NodesPerElement=\"1\">\n"
+      "<DataItem ItemType=\"HyperSlab\" Dimensions=\"{0}\" NumberType=\"Int\">\n"
+      "<DataItem Dimensions=\"3 1\" Format=\"XML\">0 1 {0}</DataItem>\n{1}</DataItem>\n</Topology>\n"
+      "<Geometry GeometryType=\"XYZ\">\n{2}</Geometry>\n",
+      count, data_item(fmt::format("{}:/{}", h5_name, rows_name), {rows}, true),
+      data_item(base + "position", {count, 3}, false));
   for (const auto& array : record.arrays) {
     if (array.name == "position") continue;
     text += attribute(array, base + array.name, "Node", array.shape.size() == 2);
@@ -150,14 +160,30 @@ void write_gas_field(core::Hdf5File& file, const std::string& group, const std::
 
 ParticleSnapshots::ParticleSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
                                      std::optional<std::int64_t> resume_step)
-    : fields_(std::move(fields)), series_(folder, "particles", describe_particles, resume_step) {
+    : fields_(std::move(fields)),
+      series_(
+          folder, "particles",
+          [this](const std::string& h5_name, const SnapshotRecord& record) {
+            return describe_particles(h5_name, record, rows_);
+          },
+          resume_step) {
   std::erase(fields_, "position");
   fields_.insert(fields_.begin(), "position");
+  if (!series_.records().empty()) {
+    rows_ = series_.shape(rows_name).at(0);
+    series_.write_xdmf();
+  }
 }
 
 void ParticleSnapshots::write(std::int64_t step, Real time, const HostParticles& particles) {
   series_.add(step, time, [&](core::Hdf5File& file, const std::string& group) {
     for (const auto& field : fields_) write_particle_field(file, group, field, particles);
+    if (particles.count() <= rows_) return;
+    rows_ = particles.count();
+    std::vector<std::int32_t> rows(rows_);
+    std::iota(rows.begin(), rows.end(), 0);
+    if (file.has(rows_name)) file.remove(rows_name);
+    file.write(rows_name, std::span<const std::int32_t>(rows));
   });
 }
 
@@ -169,6 +195,7 @@ GasSnapshots::GasSnapshots(const std::filesystem::path& folder, std::vector<std:
       file.write(fmt::format("grid/{}", "xyz"[axis]), std::span<const double>(grid.faces(axis)));
     }
   });
+  if (!series_.records().empty()) series_.write_xdmf();
 }
 
 void GasSnapshots::write(std::int64_t step, Real time, const GasFields& gas) {

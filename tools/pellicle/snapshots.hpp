@@ -42,8 +42,8 @@ class SnapshotSeries {
   /// Writes one grid of the XDMF file: topology, geometry, attributes.
   using Describe = std::function<std::string(const std::string& h5_name, const SnapshotRecord&)>;
 
-  /// Begins FOLDER/NAME.h5, or with `resume_step` goes on with it, dropping later snapshots. A file that cannot be
-  /// read any more is kept as NAME.h5.damaged, with a warning.
+  /// Begins FOLDER/NAME.h5, or with `resume_step` goes on with it, dropping later snapshots (write_xdmf() then has to
+  /// follow). A file that cannot be read any more is kept as NAME.h5.damaged, with a warning.
   SnapshotSeries(const std::filesystem::path& folder, const std::string& name, Describe describe,
                  std::optional<std::int64_t> resume_step);
 
@@ -53,11 +53,15 @@ class SnapshotSeries {
   void add(std::int64_t step, Real time,
            const std::function<void(core::Hdf5File&, const std::string& group)>& write);
 
+  /// Replaces the XDMF file by one of the present snapshots.
+  void write_xdmf() const;
+
   const std::vector<SnapshotRecord>& records() const { return records_; }
+  /// Shape of an array outside the snapshots; empty if it is not there.
+  std::vector<std::size_t> shape(const std::string& name) const;
 
  private:
   void resume(std::int64_t step);
-  void write_xdmf() const;
 
   std::filesystem::path h5_, xdmf_;
   Describe describe_;
@@ -70,10 +74,13 @@ class ParticleSnapshots {
   /// `fields`: names from particle_snapshot_fields.
   ParticleSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
                     std::optional<std::int64_t> resume_step = std::nullopt);
+  ParticleSnapshots(const ParticleSnapshots&) = delete;
+  ParticleSnapshots& operator=(const ParticleSnapshots&) = delete;
   void write(std::int64_t step, Real time, const HostParticles& particles);
 
  private:
   std::vector<std::string> fields_;
+  std::size_t rows_ = 0;  ///< length of the data set "rows": 0, 1, 2, ..., which XDMF needs as a connectivity
   SnapshotSeries series_;
 };
 
