@@ -72,6 +72,13 @@ Handle link_properties() {
   return properties;
 }
 
+/// Without the library's file locks: somebody who looks at a running simulation must not make it fail.
+Handle access_properties() {
+  Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(properties, false, true);
+  return properties;
+}
+
 }  // namespace
 
 Hdf5File::Hdf5File(std::filesystem::path path, Mode mode) : path_(std::move(path)) {
@@ -79,10 +86,11 @@ Hdf5File::Hdf5File(std::filesystem::path path, Mode mode) : path_(std::move(path
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const std::string name = path_.string();
   const bool exists = std::filesystem::exists(path_);
+  const Handle unlocked = access_properties();
   if (mode == Mode::create || (mode == Mode::append && !exists)) {
-    file_ = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    file_ = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, unlocked);
   } else {
-    file_ = H5Fopen(name.c_str(), mode == Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR, H5P_DEFAULT);
+    file_ = H5Fopen(name.c_str(), mode == Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR, unlocked);
   }
   if (file_ < 0) fail(mode == Mode::create ? "cannot be created" : "cannot be opened");
 }
