@@ -88,8 +88,8 @@ struct NoRolling {
   }
 };
 
-/// M_r = −µ_r R* F_n ω_rel/|ω_rel| (PHYSICS.md 3; T 2.12), never more than stops the relative spin within a step, the
-/// stopping torque shared among the contacts of the two particles.
+/// M_r = −µ_r R* F_n ω_rel/|ω_rel| (PHYSICS.md 3; T 2.12), never so much that it reverses the relative spin within a
+/// step, the stopping torque shared among the contacts of the two particles.
 struct ConstantTorque {
   static constexpr core::ModelInfo info{"constant_torque",
                                         "constant directional torque, ratio to the reduced radius R*",
@@ -98,13 +98,15 @@ struct ConstantTorque {
 
   Real time_step = 0;  ///< particle step [s]
 
-  /// Factor k of M_r = −k ω_rel [N m s]. `spin_compliance` is Σ n/I over the two particles [1/(kg m²)], n the number of
-  /// contacts of each: the torque that stops ω_rel if all n act alike is |ω_rel|/(Δt Σ n/I).
+  /// Factor k of M_r = −k ω_rel [N m s]. `spin_compliance` is Σ n/I over the two particles [1/(kg m²)], n ≥ 1 the number
+  /// of contacts of each: the torque that stops ω_rel if all n act alike is |ω_rel|/(Δt Σ n/I). Two thirds of it are
+  /// allowed: the motion (dem/motion.hpp) sees a spin predicted with half a step of the last torque, so that a cap c
+  /// gives ω' = (1 − 3c/2) ω + (c/2) ω_before, which changes sign for c > 2/3 and no longer decays at c = 1.
   KOKKOS_INLINE_FUNCTION Real operator()(const ContactState& c, Real normal_force, Real relative_spin,
                                          Real spin_compliance, const PairParameters& p) const {
     const Real torque = p.rolling_friction * c.reduced_radius * (normal_force > 0 ? normal_force : Real(0));
     const Real steady = torque / (relative_spin + 1e-300);
-    const Real stopping = 1 / (time_step * spin_compliance + 1e-300);
+    const Real stopping = (2.0 / 3.0) / (time_step * spin_compliance + 1e-300);
     return steady < stopping ? steady : stopping;
   }
 };

@@ -9,9 +9,10 @@ struct Accumulator {
   Vec3 force{}, torque{};
 };
 
-/// Moment of inertia of a solid sphere over mass, as its inverse: 1/I = 2.5/(m R²); 0 for a fixed particle.
-KOKKOS_INLINE_FUNCTION Real inverse_inertia(Real inverse_mass, Real radius) {
-  return 2.5 * inverse_mass / (radius * radius);
+/// n/I of a solid sphere with n contacts in the last substep, I = 0.4 m R²; 0 for a fixed particle. A contact that has
+/// just begun is not among the n yet, but is one.
+KOKKOS_INLINE_FUNCTION Real spin_compliance_of(std::int32_t touching, Real inverse_mass, Real radius) {
+  return (touching > 1 ? touching : 1) * 2.5 * inverse_mass / (radius * radius);
 }
 
 /// Extremes and impulses go on, counts start anew.
@@ -21,30 +22,30 @@ KOKKOS_INLINE_FUNCTION BlockReport start_report(BlockReport report) {
   return report;
 }
 
-/// Contacts of particle p with the walls of its row, added to its sums.
+/// Contacts of particle p with the walls of its row, added to its sums. A fixed particle has none: it may stand in a
+/// wall as far as it likes.
 template <class Laws>
 KOKKOS_INLINE_FUNCTION void add_wall_contacts(const ContactInput& in, const Laws& laws,
                                               const DeviceArray<std::int32_t>& touching, Index p,
                                               Accumulator& sum, BlockReport& report, std::int32_t& contacts) {
+  const VelocitySpin motion = in.particles.velocity_spin(p);
+  if (motion.inverse_mass == 0) return;
   const std::int32_t end = in.list.wall_offset(p + 1);
   for (std::int32_t slot = in.list.wall_offset(p); slot < end; ++slot) {
     const DevicePlane wall = in.walls(in.list.wall(slot));
     const PositionRadius self = in.particles.position_radius(p);
     const Real distance = wall.distance(self.position());
     if (distance >= self.radius) continue;
-    const VelocitySpin motion = in.particles.velocity_spin(p);
     const PairParameters& pair = in.table(motion.material * in.materials + wall.material);
     const Vec3 n = -wall.normal;
     const Vec3 dv = motion.velocity() - wall.velocity;
-    // A fixed particle has no inverse mass, and nothing acts on it: any finite reduced mass will do.
-    const Real reduced_mass = motion.inverse_mass > 0 ? 1 / motion.inverse_mass : in.particles.mass(p);
-    const ContactState c{self.radius - distance, self.radius, reduced_mass, dot(dv, n)};
-    const Real compliance = touching(p) * inverse_inertia(motion.inverse_mass, self.radius);
+    const ContactState c{self.radius - distance, self.radius, 1 / motion.inverse_mass, dot(dv, n)};
+    const Real compliance = spin_compliance_of(touching(p), motion.inverse_mass, self.radius);
     const ContactForce f =
         laws(c, pair, n, dv, distance * motion.spin(), distance, motion.spin(), compliance);
     sum.force += f.force;
     sum.torque += f.torque + f.rolling_torque;
-    if (motion.inverse_mass > 0) report.wall_impulse += in.kick * f.force;
+    report.wall_impulse += in.kick * f.force;
     ++contacts;
     ++report.touching_walls;
     report.largest_overlap = Kokkos::max(report.largest_overlap, c.overlap / self.radius);
@@ -103,12 +104,12 @@ struct ParticleContactKernel {
       if (s2 >= reach * reach) continue;
       const VelocitySpin mb = in.particles.velocity_spin(q);
       const Real mass_sum = ma.inverse_mass + mb.inverse_mass;
-      const Real compliance = out.touching(p) * inverse_inertia(ma.inverse_mass, a.radius) +
-                              out.touching(q) * inverse_inertia(mb.inverse_mass, b.radius);
+      if (mass_sum == 0) continue;  // two fixed particles may overlap
+      const Real compliance = spin_compliance_of(out.touching(p), ma.inverse_mass, a.radius) +
+                              spin_compliance_of(out.touching(q), mb.inverse_mass, b.radius);
       ContactState c;
       const ContactForce f = pair_force(laws, in.table(ma.material * in.materials + mb.material), d, s2,
-                                        a.radius, b.radius, mass_sum > 0 ? mass_sum : Real(1),
-                                        ma.velocity() - mb.velocity(), ma.spin(), mb.spin(), compliance, c);
+                                        a.radius, b.radius, mass_sum, ma.velocity() - mb.velocity(), ma.spin(), mb.spin(), compliance, c);
       sum.force += f.force;
       sum.torque += f.torque + f.rolling_torque;
       ++contacts;
@@ -205,24 +206,26 @@ struct BlockContactKernel {
     }
     const VelocitySpin ma = motion[p];
     const Real compliance_a =
-        rolling_active ? out.touching(p) * inverse_inertia(ma.inverse_mass, a.radius) : Real(0);
+        rolling_active ? spin_compliance_of(out.touching(p), ma.inverse_mass, a.radius) : Real(0);
+    int taken = 0;
     for (int k = 0; k < found; ++k) {
       const std::int32_t q = partner[k];
       const PositionRadius b = place[q];
       const VelocitySpin mb = motion[q];
+      const Real mass_sum = ma.inverse_mass + mb.inverse_mass;
+      if (mass_sum == 0) continue;  // two fixed particles may overlap
       Vec3 d{b.x - a.x, b.y - a.y, b.z - a.z};
       if (repeats) d = in.domain.shortest(d);
-      const int c = buffer.count + k;
+      const int c = buffer.count + taken++;
       buffer.dx[c] = d.x;
       buffer.dy[c] = d.y;
       buffer.dz[c] = d.z;
       buffer.s2[c] = norm_squared(d);
       buffer.ri[c] = a.radius;
       buffer.rj[c] = b.radius;
-      const Real mass_sum = ma.inverse_mass + mb.inverse_mass;
-      buffer.inverse_mass_sum[c] = mass_sum > 0 ? mass_sum : Real(1);
+      buffer.inverse_mass_sum[c] = mass_sum;
       if constexpr (rolling_active) {
-        buffer.compliance[c] = compliance_a + out.touching(q) * inverse_inertia(mb.inverse_mass, b.radius);
+        buffer.compliance[c] = compliance_a + spin_compliance_of(out.touching(q), mb.inverse_mass, b.radius);
       }
       buffer.dvx[c] = ma.vx - mb.vx;
       buffer.dvy[c] = ma.vy - mb.vy;
@@ -236,8 +239,8 @@ struct BlockContactKernel {
       if constexpr (!OnePair) buffer.pair[c] = ma.material * in.materials + mb.material;
       buffer.owner[c] = owner;
     }
-    buffer.count += found;
-    return found;
+    buffer.count += taken;
+    return taken;
   }
 
   /// Runs the laws over the gathered pairs and adds the results to their owners, in list order.

@@ -48,10 +48,10 @@ KOKKOS_INLINE_FUNCTION int classify(const Domain& domain, const PositionRadius& 
   const Vec3 x = place.position();
   int result = 0;
   for (int axis = 0; axis < 3; ++axis) {
+    if (!(x[axis] == x[axis])) result = 2;
     if (domain.periodic[axis] != 0) continue;
     if (x[axis] < domain.box.min[axis]) result = domain.open_min[axis] != 0 ? Kokkos::max(result, 1) : 2;
     if (x[axis] > domain.box.max[axis]) result = domain.open_max[axis] != 0 ? Kokkos::max(result, 1) : 2;
-    if (!(x[axis] == x[axis])) result = 2;
   }
   return result;
 }
@@ -110,8 +110,11 @@ void sum_blocks(const Particles& particles, const Vec3& gravity, Real half_step,
           t.moment += mass * place.z;
           t.kinetic_energy += 0.5 * mass * norm_squared(v) + 0.5 * inertia * norm_squared(motion.spin());
           t.potential_energy -= mass * dot(gravity, place.position());
-          t.momentum += mass * (v - half_step * particles.acceleration(p));
-          t.angular_momentum += mass * cross(place.position(), v) + inertia * motion.spin();
+          const Vec3 half_step_velocity = v - half_step * particles.acceleration(p);
+          const Vec3 half_step_spin = motion.spin() - half_step * particles.angular_acceleration(p);
+          t.momentum += mass * half_step_velocity;
+          t.angular_momentum +=
+              mass * cross(place.position(), half_step_velocity) + inertia * half_step_spin;
           t.largest_speed = Kokkos::max(t.largest_speed, norm(v));
         }
         blocks(block) = t;
@@ -163,11 +166,17 @@ void Engine::allocate(std::size_t n) {
 }
 
 void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
+  std::vector<bool> of_particles(setup_.materials.size(), false);
+  std::vector<bool> of_walls(setup_.materials.size(), false);
+  for (const ParticleSeed& s : seeds) of_particles.at(static_cast<std::size_t>(s.material)) = true;
+  for (const PlaneWall& w : setup_.walls) of_walls.at(static_cast<std::size_t>(w.material)) = true;
+  require_pairs(setup_.materials, setup_.pairs, of_particles, of_walls);
   allocate(seeds.size());
   search_.clear();
   started_ = false;
   left_ = 0;
   left_momentum_ = gravity_impulse_ = Vec3{};
+  volume_time_ = 0;
   if (seeds.empty()) return;
   const auto place = Kokkos::create_mirror_view(particles_.position_radius);
   const auto motion = Kokkos::create_mirror_view(particles_.velocity_spin);
@@ -290,7 +299,7 @@ void Engine::prepare_outer_step() {
 
 ContactReport Engine::collect_report() {
   ContactReport sum;
-  if (particles_.count == 0) return sum;
+  if (result_.report.extent(0) == 0) return sum;
   const Index blocks = contact_block_count(particles_.count);
   const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, result_.report);
   // Blocks beyond the present ones carry what they saw before particles left.
@@ -383,13 +392,13 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/left", left_);
   file.write("dem/left_momentum", left_momentum_);
   file.write("dem/gravity_impulse", gravity_impulse_);
+  file.write("dem/volume_time", volume_time_);
   file.write("dem/started", std::int64_t{started_ ? 1 : 0});
   if (n == 0) return;
   file.write("dem/smallest_radius", smallest_radius_);
   file.write("dem/largest_radius", largest_radius_);
   file.write("dem/moving_mass", moving_mass_);
   file.write("dem/moving_volume", moving_volume_);
-  file.write("dem/volume_time", volume_time_);
   file.write("dem/one_particle_material", std::int64_t{one_particle_material_ ? 1 : 0});
   file.write("dem/position_radius", host_copy(particles_.position_radius, n));
   file.write("dem/velocity_spin", host_copy(particles_.velocity_spin, n));
@@ -407,6 +416,7 @@ void Engine::load(core::CheckpointReader& file) {
   left_ = file.read_int64("dem/left");
   left_momentum_ = file.read_vec3("dem/left_momentum");
   gravity_impulse_ = file.read_vec3("dem/gravity_impulse");
+  volume_time_ = file.read_double("dem/volume_time");
   started_ = file.read_int64("dem/started") != 0;
   search_.clear();
   if (n == 0) return;
@@ -420,7 +430,6 @@ void Engine::load(core::CheckpointReader& file) {
   largest_radius_ = file.read_double("dem/largest_radius");
   moving_mass_ = file.read_double("dem/moving_mass");
   moving_volume_ = file.read_double("dem/moving_volume");
-  volume_time_ = file.read_double("dem/volume_time");
   one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
   search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
   canonicalise();

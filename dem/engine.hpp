@@ -54,7 +54,7 @@ struct ParticleTotals {
   Real mass = 0;              ///< of moving particles, as all sums here [kg]
   Real volume = 0;            ///< [m³]
   Vec3 momentum{};            ///< Σ m h, h the half-step velocity whose change is exactly Σ F Δt [kg m/s]
-  Vec3 angular_momentum{};    ///< about the origin, with v*, spin included [kg m²/s]
+  Vec3 angular_momentum{};    ///< about the origin, spin included, at the half step like momentum [kg m²/s]
   Real kinetic_energy = 0;    ///< translation and spin [J]
   Real potential_energy = 0;  ///< −Σ m g·x [J]
   Real mean_height = 0;       ///< mass-weighted z [m]
@@ -66,7 +66,8 @@ class Engine {
   /// Throws std::invalid_argument where the set-up cannot work.
   explicit Engine(const EngineSetup& setup);
 
-  /// Replaces all particles; ids are 0, 1, … in the order given.
+  /// Replaces all particles; ids are 0, 1, … in the order given. Throws std::invalid_argument where contact properties
+  /// of two materials that can meet are missing.
   void set_particles(const std::vector<ParticleSeed>& seeds);
 
   /// Before the substeps of an outer step: removes particles that left through open sides (counted), stops the run if

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
+
+#include "core/random.hpp"
 
 namespace pellicle::dem {
 namespace {
@@ -21,7 +22,11 @@ Box bounds(const FillRegion& region) {
   return box;
 }
 
-bool fits(const FillRegion& region, const Vec3& x, Real radius) {
+/// Of a radius; a slot of exactly one diameter must hold a sphere whatever the last bit of its coordinates.
+constexpr Real fit_tolerance = 1e-9;
+
+bool fits(const FillRegion& region, const Vec3& x, Real sphere_radius) {
+  const Real radius = (1 - fit_tolerance) * sphere_radius;
   if (const auto* box = std::get_if<Box>(&region)) {
     for (int a = 0; a < 3; ++a) {
       if (x[a] < box->min[a] + radius || x[a] > box->max[a] - radius) return false;
@@ -104,21 +109,20 @@ std::vector<Vec3> fill_lattice(const FillRegion& region, const std::vector<Real>
   const Box box = bounds(region);
   const Real pitch = 2.001 * largest;
   Index3 n;
-  for (int a = 0; a < 3; ++a)
-    n[a] = static_cast<Index>((box.max[a] - box.min[a] - 2 * largest) / pitch + 1e-9) + 1;
-  // Spread over the width so that the layers stand free of the sides; upwards they start at the floor.
-  const auto coordinate = [&](int a, Index i) {
-    const Real slack = box.max[a] - box.min[a] - 2 * largest - pitch * (n[a] - 1);
-    return box.min[a] + largest + (a == 2 ? 0.0005 * largest : 0.5 * slack) + pitch * i;
-  };
+  Vec3 first;
   for (int a = 0; a < 3; ++a) {
-    if (box.max[a] - box.min[a] < 2 * largest) return centres;
+    const Real room = box.max[a] - box.min[a] - 2 * largest;
+    if (room < -fit_tolerance * largest) return centres;
+    n[a] = static_cast<Index>(room / pitch + 0.25 * fit_tolerance) + 1;
+    // Spread over the width so that the layers stand free of the sides; upwards they start at the floor.
+    const Real slack = std::max(0.0, room - pitch * (n[a] - 1));
+    first[a] = box.min[a] + largest + (a == 2 ? std::min(0.0005 * largest, slack) : 0.5 * slack);
   }
   for (Index k = 0; k < n.z; ++k) {
     for (Index j = 0; j < n.y; ++j) {
       for (Index i = 0; i < n.x; ++i) {
         if (centres.size() == radii.size()) return centres;
-        const Vec3 x{coordinate(0, i), coordinate(1, j), coordinate(2, k)};
+        const Vec3 x{first.x + pitch * i, first.y + pitch * j, first.z + pitch * k};
         if (fits(region, x, radii[centres.size()]) && present.free(x, radii[centres.size()]))
           centres.push_back(x);
       }
@@ -137,16 +141,15 @@ std::vector<Vec3> fill_random(const FillRegion& region, const std::vector<Real>&
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return radii[a] > radii[b]; });
-  std::mt19937_64 engine(seed);
-  // Not std::uniform_real_distribution: its numbers differ between standard libraries.
-  const auto uniform = [&engine] { return static_cast<Real>(engine() >> 11) * 0x1.0p-53; };
   for (std::size_t placed = 0; placed < order.size(); ++placed) {
     const Real radius = radii[order[placed]];
     bool found = false;
     for (int attempt = 0; attempt < tries && !found; ++attempt) {
+      const Vec3 share = core::random_uniform3(seed, core::Purpose::fill_position, attempt,
+                                               static_cast<std::int64_t>(order[placed]));
       Vec3 x;
       for (int a = 0; a < 3; ++a) {
-        x[a] = box.min[a] + radius + uniform() * (box.max[a] - box.min[a] - 2 * radius);
+        x[a] = box.min[a] + radius + share[a] * (box.max[a] - box.min[a] - 2 * radius);
       }
       if (!fits(region, x, radius) || !grid.free(x, radius)) continue;
       grid.add({x, radius});

@@ -62,11 +62,15 @@ std::vector<PairParameters> make_pair_table(const std::vector<Material>& materia
                                             const std::vector<PairProperties>& pairs, bool clip) {
   const auto n = materials.size();
   std::vector<PairParameters> table(n * n);
-  std::vector<char> given(n * n, 0);
+  std::vector<bool> given(n * n, false);
   for (const auto& pair : pairs) {
     const auto a = static_cast<std::size_t>(pair.material_a);
     const auto b = static_cast<std::size_t>(pair.material_b);
     if (a >= n || b >= n) throw std::invalid_argument("contact pair names a material that does not exist");
+    if (given[a * n + b]) {
+      throw std::invalid_argument("contact pair between " + materials[a].name + " and " + materials[b].name +
+                                  " is given twice");
+    }
     PairParameters p;
     p.effective_youngs_modulus = effective_youngs_modulus(materials[a], materials[b]);
     p.effective_shear_modulus = effective_shear_modulus(materials[a], materials[b]);
@@ -77,17 +81,28 @@ std::vector<PairParameters> make_pair_table(const std::vector<Material>& materia
     p.sliding_friction = pair.sliding_friction;
     p.rolling_friction = pair.rolling_friction;
     table[a * n + b] = table[b * n + a] = p;
-    given[a * n + b] = given[b * n + a] = 1;
+    given[a * n + b] = given[b * n + a] = true;
   }
-  for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t b = a; b < n; ++b) {
-      if (!given[a * n + b] && !(materials[a].rigid && materials[b].rigid)) {
+  return table;
+}
+
+void require_pairs(const std::vector<Material>& materials, const std::vector<PairProperties>& pairs,
+                   const std::vector<bool>& of_particles, const std::vector<bool>& of_walls) {
+  const auto listed = [&pairs](std::size_t a, std::size_t b) {
+    return std::any_of(pairs.begin(), pairs.end(), [a, b](const PairProperties& p) {
+      const auto first = static_cast<std::size_t>(p.material_a);
+      const auto second = static_cast<std::size_t>(p.material_b);
+      return (first == a && second == b) || (first == b && second == a);
+    });
+  };
+  for (std::size_t a = 0; a < materials.size(); ++a) {
+    for (std::size_t b = 0; b < materials.size(); ++b) {
+      if (of_particles[a] && (of_particles[b] || of_walls[b]) && !listed(a, b)) {
         throw std::invalid_argument("no contact pair between " + materials[a].name + " and " +
                                     materials[b].name);
       }
     }
   }
-  return table;
 }
 
 TimeStepBound compute_time_step_bound(const std::vector<Material>& materials,

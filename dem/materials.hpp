@@ -32,10 +32,15 @@ struct PairProperties {
 /// without, it is the textbook Λ = −ln e/√(ln² e + π²). Restitution in (0, 1]; throws std::invalid_argument.
 Real compute_damping_ratio(Real restitution, bool clip);
 
-/// Square table of pair parameters, entry a * materials.size() + b. A pair that is not listed is an error:
-/// std::invalid_argument naming both materials, unless one of them cannot meet the other (two rigid ones).
+/// Square table of pair parameters, entry a * materials.size() + b; zeros for a pair that is not listed. A pair listed
+/// twice, or of a material that does not exist, throws std::invalid_argument.
 std::vector<PairParameters> make_pair_table(const std::vector<Material>& materials,
                                             const std::vector<PairProperties>& pairs, bool clip);
+
+/// Throws std::invalid_argument naming both materials where no pair is listed although the two can meet: a material
+/// of particles and another one of particles or of walls. Both flags are one a material.
+void require_pairs(const std::vector<Material>& materials, const std::vector<PairProperties>& pairs,
+                   const std::vector<bool>& of_particles, const std::vector<bool>& of_walls);
 
 /// Largest stable particle time step [s]: min(0.2 T_Rayleigh, t_c/20) over all materials and pairs (PHYSICS.md 3).
 struct TimeStepBound {
