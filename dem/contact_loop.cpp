@@ -108,8 +108,9 @@ struct ParticleContactKernel {
       const Real compliance = spin_compliance_of(out.touching(p), ma.inverse_mass, a.radius) +
                               spin_compliance_of(out.touching(q), mb.inverse_mass, b.radius);
       ContactState c;
-      const ContactForce f = pair_force(laws, in.table(ma.material * in.materials + mb.material), d, s2,
-                                        a.radius, b.radius, mass_sum, ma.velocity() - mb.velocity(), ma.spin(), mb.spin(), compliance, c);
+      const ContactForce f =
+          pair_force(laws, in.table(ma.material * in.materials + mb.material), d, s2, a.radius, b.radius,
+                     mass_sum, ma.velocity() - mb.velocity(), ma.spin(), mb.spin(), compliance, c);
       sum.force += f.force;
       sum.torque += f.torque + f.rolling_torque;
       ++contacts;

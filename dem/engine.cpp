@@ -113,8 +113,7 @@ void sum_blocks(const Particles& particles, const Vec3& gravity, Real half_step,
           const Vec3 half_step_velocity = v - half_step * particles.acceleration(p);
           const Vec3 half_step_spin = motion.spin() - half_step * particles.angular_acceleration(p);
           t.momentum += mass * half_step_velocity;
-          t.angular_momentum +=
-              mass * cross(place.position(), half_step_velocity) + inertia * half_step_spin;
+          t.angular_momentum += mass * cross(place.position(), half_step_velocity) + inertia * half_step_spin;
           t.largest_speed = Kokkos::max(t.largest_speed, norm(v));
         }
         blocks(block) = t;
