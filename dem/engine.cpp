@@ -201,7 +201,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   one_particle_material_ =
       std::all_of(seeds.begin(), seeds.end(), [](const ParticleSeed& s) { return s.material == 0; });
   take_stock();
-  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
+  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
   canonicalise();
 }
 
@@ -373,6 +373,7 @@ void read_array(const core::CheckpointReader& file, const char* name, const Devi
 
 void Engine::take_stock() {
   const auto place = host_copy(particles_.position_radius, particles_.count);
+  start_count_ = particles_.count;
   smallest_radius_ = largest_radius_ = place(0).radius;
   for (std::size_t p = 0; p < place.extent(0); ++p) {
     smallest_radius_ = std::min(smallest_radius_, place(p).radius);
@@ -396,6 +397,7 @@ void Engine::save(core::CheckpointWriter& file) const {
   if (n == 0) return;
   file.write("dem/smallest_radius", smallest_radius_);
   file.write("dem/largest_radius", largest_radius_);
+  file.write("dem/start_count", start_count_);
   file.write("dem/moving_mass", moving_mass_);
   file.write("dem/moving_volume", moving_volume_);
   file.write("dem/one_particle_material", std::int64_t{one_particle_material_ ? 1 : 0});
@@ -427,10 +429,11 @@ void Engine::load(core::CheckpointReader& file) {
   read_array(file, "dem/touching", result_.touching);
   smallest_radius_ = file.read_double("dem/smallest_radius");
   largest_radius_ = file.read_double("dem/largest_radius");
+  start_count_ = file.read_int64("dem/start_count");
   moving_mass_ = file.read_double("dem/moving_mass");
   moving_volume_ = file.read_double("dem/moving_volume");
   one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
-  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
+  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
   canonicalise();
 }
 

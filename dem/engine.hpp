@@ -142,8 +142,10 @@ class Engine {
   Vec3 left_momentum_{};
   Vec3 gravity_impulse_{};
   Real volume_time_ = 0;
-  Real moving_mass_ = 0, moving_volume_ = 0;       // [kg], [m³], of the particles present
-  Real smallest_radius_ = 0, largest_radius_ = 0;  // [m], of those at the start: they shape the cell grid
+  Real moving_mass_ = 0, moving_volume_ = 0;  // [kg], [m³], of the particles present
+  // Of the particles at the start: they shape the cell grid, which must be the same after a restart.
+  Real smallest_radius_ = 0, largest_radius_ = 0;  // [m]
+  std::int64_t start_count_ = 0;
   std::int64_t outer_steps_since_sort_ = 0;
 };
 

@@ -169,7 +169,7 @@ struct CountPairs {
       for (std::int32_t o = begin; o < end; ++o) pairs += in_reach<Repeats>(domain, self, place[o]) ? 1 : 0;
     });
     const Index p = order(slot);
-    pair_count(p) = pairs;
+    pair_count(p) = pairs < 0 ? 0 : pairs;  // a particle that is nowhere (NaN) is not even near itself
     std::int32_t near = 0;
     const auto wall_total = static_cast<Index>(walls.extent(0));
     for (Index w = 0; w < wall_total; ++w) near += walls(w).distance(self.position()) < self.radius ? 1 : 0;
@@ -222,7 +222,7 @@ std::size_t read_total(const DeviceArray<std::int32_t>& offset, Index n) {
 }  // namespace
 
 NeighbourSearch::NeighbourSearch(const Domain& domain, const SkinOptions& skin, Real smallest_radius,
-                                 Real largest_radius)
+                                 Real largest_radius, std::int64_t particles)
     : domain_(domain), skin_(skin), smallest_radius_(smallest_radius), largest_radius_(largest_radius) {
   const Real reach = 2 * largest_radius_ * (1 + skin_.largest_fraction);
   for (int axis = 0; axis < 3; ++axis) {
@@ -231,8 +231,18 @@ NeighbourSearch::NeighbourSearch(const Domain& domain, const SkinOptions& skin, 
       throw std::invalid_argument("a periodic domain must be at least " + std::to_string(2 * reach) +
                                   " m wide for these particles, so that none meets two images of another");
     }
-    cells_[axis] = std::clamp(static_cast<Index>(std::min(length / reach, 2000.0)), Index{1}, Index{2000});
-    inverse_cell_size_[axis] = static_cast<Real>(cells_[axis]) / length;
+    cells_[axis] = static_cast<Index>(std::clamp(length / reach, 1.0, 1e6));
+  }
+  // A few small particles in a large domain: wider cells, so that the grid does not cost more than they do.
+  const auto total = [this] { return static_cast<Real>(cells_.x) * cells_.y * cells_.z; };
+  const Real most = 4096 + 16 * static_cast<Real>(particles);
+  while (total() > most) {
+    const Real factor = std::min(0.9, std::cbrt(most / total()));
+    for (int axis = 0; axis < 3; ++axis)
+      cells_[axis] = std::max(1, static_cast<Index>(factor * cells_[axis]));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    inverse_cell_size_[axis] = static_cast<Real>(cells_[axis]) / domain_.length()[axis];
   }
 }
 

@@ -52,7 +52,10 @@ struct NeighbourList {
 /// Scratch of the search, kept to spare allocations, and the canonical order of the particles.
 class NeighbourSearch {
  public:
-  NeighbourSearch(const Domain& domain, const SkinOptions& skin, Real smallest_radius, Real largest_radius);
+  /// Radii [m] of the smallest and largest particle, and about how many there will be: the three shape the cell grid,
+  /// and with it the canonical order. Throws std::invalid_argument where a periodic axis is too short.
+  NeighbourSearch(const Domain& domain, const SkinOptions& skin, Real smallest_radius, Real largest_radius,
+                  std::int64_t particles);
 
   /// Finds all pairs and walls within reach; the result depends on positions, speeds and ids alone, not on the memory
   /// order or the number of threads. Time step in s.

@@ -111,7 +111,7 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   Kokkos::deep_copy(in.table, table_host);
   in.materials = static_cast<Index>(setup.materials.size());
   in.kick = setup.time_step;
-  NeighbourSearch search(setup.domain, setup.skin, smallest, largest);
+  NeighbourSearch search(setup.domain, setup.skin, smallest, largest, in.particles.count);
   search.build(in.particles, in.walls, setup.time_step, in.list);
 
   ContactOptions options = setup.contacts;
