@@ -114,7 +114,7 @@ class Engine {
   Real neighbours_per_particle() const;
 
  private:
-  void allocate(std::size_t count);
+  void allocate(std::size_t n);
   void begin_substep(core::Timers& timers);
   void end_substep();
   void sort_memory();

@@ -29,6 +29,7 @@ inline std::vector<Grain> grains(const dem::Particles& particles) {
   const auto angular =
       Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, particles.angular_acceleration);
   std::vector<Grain> result;
+  result.reserve(static_cast<std::size_t>(particles.count));
   for (Index p = 0; p < particles.count; ++p) {
     result.push_back({motion(p).id, place(p).position(), motion(p).velocity(), motion(p).spin(),
                       place(p).radius, mass(p), linear(p), angular(p), motion(p).inverse_mass == 0});

@@ -272,7 +272,9 @@ TEST(ContactLoop, PairForcesAreOppositeToTheLastBit) {
     setup.domain.periodic = {1, 0, 1};  // some pairs reach over the edge
     std::vector<ParticleSeed> seeds;
     for (int pair = 0; pair < 300; ++pair) {
-      const Vec3 x{0.1 * (pair % 10), 0.05 + 0.1 * (pair / 10 % 10), 0.1 * (pair / 100)};
+      const int layer = pair / 100;
+      const int row = pair / 10 % 10;
+      const Vec3 x{0.1 * (pair % 10), 0.05 + 0.1 * row, 0.1 * layer};
       const Vec3 sizes = 0.002 * random_vector(1, pair);
       const Real ri = 0.003 + sizes.x;
       const Real rj = 0.003 + sizes.y;

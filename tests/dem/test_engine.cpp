@@ -43,8 +43,9 @@ Sums sum_half_step(const std::vector<Grain>& all, Real time_step) {
 
 /// A cloud of overlapping grains of several sizes that fly into each other, in the middle of a wide domain.
 std::vector<ParticleSeed> make_cluster(int count, int seed) {
-  std::vector<Real> radii;
-  for (int p = 0; p < count; ++p) radii.push_back(0.001 + 0.0005 * random_vector(seed, p).x);
+  std::vector<Real> radii(static_cast<std::size_t>(count));
+  for (int p = 0; p < count; ++p)
+    radii[static_cast<std::size_t>(p)] = 0.001 + 0.0005 * random_vector(seed, p).x;
   const auto centres =
       tests::scatter({{-0.006, -0.006, -0.006}, {0.006, 0.006, 0.006}}, radii, 0.05, seed + 1);
   std::vector<ParticleSeed> seeds;
@@ -301,8 +302,8 @@ TEST(Engine, ContinuesBitForBitAfterACheckpoint) {
   setup.domain.open_max = {0, 0, 1};
   setup.gravity = {0, 5, -200};  // settles within the test
   tests::add_box_walls(setup);
-  std::vector<Real> radii;
-  for (int p = 0; p < 150; ++p) radii.push_back(p % 4 == 0 ? 0.0015 : 0.0009);
+  std::vector<Real> radii(150);
+  for (std::size_t p = 0; p < 150; ++p) radii[p] = p % 4 == 0 ? 0.0015 : 0.0009;
   const auto centres = tests::scatter({{0.002, 0.0015, 0.002}, {0.018, 0.0135, 0.018}}, radii, 0, 51);
   std::vector<ParticleSeed> seeds;
   for (int p = 0; p < 150; ++p) {

@@ -66,8 +66,8 @@ TEST(Fill, RandomInABoxNeitherOverlapsNorSticksOut) {
 }
 
 TEST(Fill, RandomPolydisperseKeepsTheOrderOfTheRadii) {
-  std::vector<Real> radii;
-  for (int p = 0; p < 600; ++p) radii.push_back(0.0005 + 0.0002 * (p % 11));
+  std::vector<Real> radii(600);
+  for (std::size_t p = 0; p < 600; ++p) radii[p] = 0.0005 + 0.0002 * static_cast<Real>(p % 11);
   const auto centres = fill_region(box, FillPattern::random, radii, 8);
   ASSERT_EQ(centres.size(), radii.size());
   expect_apart(centres, radii);  // radius p belongs to centre p, else some would overlap or stick out

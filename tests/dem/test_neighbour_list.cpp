@@ -109,7 +109,7 @@ struct Situation {
   Real outside;  // share of the box by which points may lie out of it
 };
 
-void PrintTo(const Situation& situation, std::ostream* out) { *out << situation.name; }
+std::ostream& operator<<(std::ostream& out, const Situation& situation) { return out << situation.name; }
 
 class NeighbourList : public ::testing::TestWithParam<Situation> {};
 
@@ -229,8 +229,8 @@ TEST(NeighbourSearch, MissesNoContactWhileParticlesMove) {
   setup.domain.periodic = {1, 0, 1};
   setup.contacts.overlap_limit = 1;  // soft grains, hard impacts
   tests::add_box_walls(setup);
-  std::vector<Real> radii;
-  for (int p = 0; p < 120; ++p) radii.push_back(p % 2 == 0 ? 0.0018 : 0.001);
+  std::vector<Real> radii(120);
+  for (std::size_t p = 0; p < 120; ++p) radii[p] = p % 2 == 0 ? 0.0018 : 0.001;
   const auto centres = tests::scatter({{0, 0.0018, 0}, {0.03, 0.0282, 0.03}}, radii, 0, 21);
   std::vector<ParticleSeed> seeds;
   for (int p = 0; p < 120; ++p) {
