@@ -31,7 +31,7 @@ void Outputs::sample(const OutputState& state, bool last) {
   if (state.step < 0) return;
   lines_.sample(state.step, state.particles, state.gas);
   probes_.sample(state);
-  histograms_.sample(state);
+  histograms_.sample(state, last);
   if (!snapshot_schedule_.due(state.step) && !last) return;
   if (particle_snapshots_) particle_snapshots_->write(state.step, state.time, state.host_particles());
   if (gas_snapshots_ && state.gas != nullptr) gas_snapshots_->write(state.step, state.time, *state.gas);

@@ -121,9 +121,10 @@ Histograms::Histograms(const std::vector<HistogramSpec>& specs, core::TimeContro
   }
 }
 
-void Histograms::sample(const OutputState& state) {
+void Histograms::sample(const OutputState& state, bool last) {
   for (auto& histogram : histograms_) {
-    if (!histogram.schedule.due(state.step)) continue;
+    const bool at_end_alone = histogram.schedule.steps == 0;
+    if (!(at_end_alone ? last : histogram.schedule.due(state.step))) continue;
     const HistogramSpec& spec = histogram.spec;
     const HostParticles& particles = state.host_particles();
     if (particles.count() == 0) continue;

@@ -62,7 +62,8 @@ class Histograms {
   Histograms(const std::vector<HistogramSpec>& specs, core::TimeControl& time, const ResultsFolder& folder,
              std::optional<Real> resume_time);
 
-  void sample(const OutputState& state);
+  /// Those without `every` are taken at the end of the run alone (`last`).
+  void sample(const OutputState& state, bool last = false);
   void flush();
 
  private:

@@ -1,0 +1,114 @@
+#!/usr/bin/python3
+"""The plotting scripts against made-up results whose deviations are known by hand."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+TOP = pathlib.Path(os.environ.get("PELLICLE_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
+PLOT = TOP / "tools" / "plot"
+
+
+def run(script, *arguments):
+    return subprocess.run([sys.executable, str(PLOT / script), *map(str, arguments)], capture_output=True, text=True)
+
+
+def write_line(folder, name, value):
+    (folder / "lines").mkdir(parents=True, exist_ok=True)
+    rows = "".join(f"{x:.9g},{value(x):.9g},0.1,100\n" for x in np.linspace(0.005, 0.095, 10))
+    (folder / "lines" / f"{name}.csv").write_text(
+        "x [m],void_fraction [-],standard_deviation [-],samples [-]\n" + rows)
+
+
+def write_snapshots(folder):
+    with h5py.File(folder / "particles.h5", "w") as h5:
+        for step in range(3):
+            group = h5.create_group(f"step{step:010}")
+            group.attrs["time"], group.attrs["step"] = 0.1 * step, step
+            group["position"] = np.array([[0.02, 0.01, 0.02 + 0.01 * step], [0.06, 0.01, 0.03]])
+            group["velocity"] = np.array([[0, 0, 0.1], [0.2, 0, 0]])
+            group["radius"] = np.array([0.005, 0.004])
+    with h5py.File(folder / "gas.h5", "w") as h5:
+        for axis, cells, length in (("x", 10, 0.1), ("y", 2, 0.02), ("z", 8, 0.08)):
+            h5[f"grid/{axis}"] = np.linspace(0, length, cells + 1)
+        for step in range(3):
+            group = h5.create_group(f"step{step:010}")
+            group.attrs["time"], group.attrs["step"] = 0.1 * step, step
+            group["velocity"] = np.ones((8, 2, 10, 3)) * [0, 0, 1.0]
+            group["void_fraction"] = np.full((8, 2, 10), 0.5)
+
+
+class Plots(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def test_deviations_by_hand(self):
+        results = self.folder / "linear"
+        write_line(results, "void", lambda x: 0.4 + x)
+        write_line(results, "other", lambda x: 0.4)
+        reference = self.folder / "measured.csv"
+        # Two points off by +0.03 and -0.04 halfway between bins, one right, one beyond the outermost bin's centre.
+        reference.write_text("# made up\nx_m,voidage\n0.02,0.39\n0.05,0.49\n0.07,0.47\n0.099,0.9\n")
+        picture, table = self.folder / "p.png", self.folder / "t.csv"
+        done = run("plot_profiles.py", results, "--line", "void", "--reference", f"void={reference}", "--table", table,
+                   "-o", picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(picture.stat().st_size, 5000)
+        header, row = (line.split(",") for line in table.read_text().splitlines())
+        found = dict(zip(header, row))
+        self.assertEqual((found["points"], found["left out"]), ("3", "1"))
+        # Simulated 0.42, 0.45, 0.47: deviations +0.03, -0.04, 0; RMS sqrt((9 + 16) / 3) / 100; peak 0.9.
+        self.assertAlmostEqual(float(found["RMS deviation"]), (25 / 3) ** 0.5 / 100, delta=1e-5)
+        self.assertAlmostEqual(float(found["largest deviation"]), -0.04, delta=1e-5)
+        self.assertAlmostEqual(float(found["at [m]"]), 0.05, delta=1e-9)
+        self.assertAlmostEqual(float(found["largest / peak [%]"]), 100 * 0.04 / 0.9, delta=0.06)
+
+    def test_reference_needs_its_line(self):
+        results = self.folder / "two"
+        write_line(results, "a", lambda x: x)
+        write_line(results, "b", lambda x: x)
+        reference = self.folder / "measured.csv"
+        reference.write_text("x_m,voidage\n0.02,0.39\n")
+        done = run("plot_profiles.py", results, "--reference", reference, "-o", self.folder / "p.png")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("LINE=FILE", done.stderr)
+
+    def test_bed_images(self):
+        results = self.folder / "bed"
+        results.mkdir()
+        write_snapshots(results)
+        for options in (["--frames", "2"], ["--time", "0.1", "--gas", "void_fraction"], ["--gas", "none"]):
+            picture = self.folder / "bed.png"
+            done = run("bed_image.py", results, *options, "-o", picture)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertGreater(picture.stat().st_size, 5000)
+            picture.unlink()
+        done = run("bed_image.py", results, "--frames", "2", "-o", self.folder / "bed.png")
+        self.assertIn("t = 0.1, 0.2 s", done.stdout)
+
+    def test_series(self):
+        results = self.folder / "series"
+        (results / "probes").mkdir(parents=True)
+        (results / "probes" / "bed.csv").write_text("time [s],bed_height [m]\n0,1\n1,2\n2,4\n3,6\n")
+        done = run("plot_series.py", results, "--from", "1", "--to", "2.5", "-o", self.folder / "s.png")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("bed_height: mean 3, standard deviation 1\n", done.stdout)
+
+    def test_messages(self):
+        done = run("bed_image.py", self.folder / "none", "-o", "x.png")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("no such results folder", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
