@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view override_place = "--set";
 /// Aliases of aliases can blow up a short text; no case file comes near this.
-constexpr std::size_t most_nodes = 10'000'000;
+constexpr std::size_t most_nodes_by_alias = 100'000;
 
 std::size_t count_nodes(const YamlNode& node) {
   std::size_t count = 1;
@@ -51,8 +51,8 @@ class TreeBuilder : public YAML::EventHandler {
     const auto found = anchors_.find(anchor);
     if (found == anchors_.end())
       fail(mark, "an alias inside what it stands for; aliases may not be recursive");
-    node_count_ += count_nodes(found->second);
-    if (node_count_ > most_nodes) fail(mark, "aliases that grow without bounds; fewer aliases");
+    nodes_by_alias_ += count_nodes(found->second);
+    if (nodes_by_alias_ > most_nodes_by_alias) fail(mark, "aliases that grow without bounds; fewer aliases");
     add_leaf(found->second, 0);
   }
 
@@ -142,7 +142,6 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void add_leaf(YamlNode node, YAML::anchor_t anchor) {
-    ++node_count_;
     if (anchor != 0) anchors_[anchor] = node;
     if (levels_.empty()) {
       root_ = std::move(node);
@@ -163,7 +162,7 @@ class TreeBuilder : public YAML::EventHandler {
   YamlNode root_;
   std::vector<Level> levels_;
   std::map<YAML::anchor_t, YamlNode> anchors_;
-  std::size_t node_count_ = 0;
+  std::size_t nodes_by_alias_ = 0;
 };
 
 void set_place(YamlNode& node, const std::string& place) {
@@ -244,6 +243,7 @@ YamlNode read_yaml_file(const std::string& path) {
   std::ostringstream text;
   text << file.rdbuf();
   if (file.bad()) fail(std::strerror(errno));
+  if (text.str().find('\0') != std::string::npos) fail("it is no text");
   return parse_yaml(text.str(), path);
 }
 

@@ -6,6 +6,7 @@
 
 #include "dem/fill.hpp"
 #include "dem/materials.hpp"
+#include "dem/neighbour_list.hpp"
 #include "tools/pellicle/case_checks.hpp"
 
 namespace pellicle::tools {
@@ -54,6 +55,10 @@ DiameterRange diameter_range(const CaseSpec& spec) {
     for (const auto& particle : population.list) add(particle.diameter);
   }
   return range;
+}
+
+Real least_periodic_width(const CaseSpec& spec) {
+  return 2 * diameter_range(spec).largest * (1 + dem::SkinOptions{}.largest_fraction);
 }
 
 bool can_meet(const CaseSpec& spec, int material_a, int material_b) {

@@ -34,7 +34,8 @@ class Checker {
     check_steps();
     if (!spec_.particles.empty()) check_particles();
     check_sides();
-    if (spec_.gas && !spec_.particles.empty()) check_transfer_grid();
+    if (!spec_.particles.empty()) check_periodic_width();
+    if (spec_.gas && !spec_.particles.empty()) check_coupling();
     for (const auto& line : spec_.output.lines) check_line(line);
     for (const auto& probe : spec_.output.probes) check_probe(probe);
     for (const auto& histogram : spec_.output.histograms) {
@@ -67,24 +68,23 @@ class Checker {
     return true;
   }
 
-  template <class Entries, class NameAndWhere>
-  void check_unique(const Entries& entries, const NameAndWhere& name_and_where) {
+  template <class Entry>
+  void check_unique(const std::vector<Entry>& entries) {
     std::set<std::string> names;
     for (const auto& entry : entries) {
-      const auto& [name, where] = name_and_where(entry);
-      if (!names.insert(name).second) {
-        problems_.add(where, fmt::format("another one is called {} already; a name of its own", name));
+      if (!names.insert(entry.name).second) {
+        wrong(entry.where, "name",
+              fmt::format("another one is called {} already; a name of its own", entry.name));
       }
     }
   }
 
   void check_names() {
-    const auto name_and_where = [](const auto& entry) { return std::pair(entry.name, entry.where); };
-    check_unique(spec_.walls, name_and_where);
-    if (spec_.gas) check_unique(spec_.gas->boundaries, name_and_where);
-    check_unique(spec_.output.lines, name_and_where);
-    check_unique(spec_.output.probes, name_and_where);
-    check_unique(spec_.output.histograms, name_and_where);
+    check_unique(spec_.walls);
+    if (spec_.gas) check_unique(spec_.gas->boundaries);
+    check_unique(spec_.output.lines);
+    check_unique(spec_.output.probes);
+    check_unique(spec_.output.histograms);
   }
 
   void check_steps() {
@@ -234,6 +234,30 @@ class Checker {
   }
   static std::string_view side_name(cfd::Side side) {
     return domain_sides[static_cast<std::size_t>(side)].name;
+  }
+
+  void check_periodic_width() {
+    const Real least = least_periodic_width(spec_);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Real length = spec_.domain.box.max[axis] - spec_.domain.box.min[axis];
+      if (spec_.domain.periodic[static_cast<std::size_t>(axis)] && length < least) {
+        wrong_key("domain.periodic", fmt::format("the domain is {:.3g} m wide along {}, too narrow for these "
+                                                 "particles to be periodic; at least {:.3g} m",
+                                                 length, "xyz"[axis], least));
+      }
+    }
+  }
+
+  void check_coupling() {
+    check_transfer_grid();
+    // Beyond this the carried momentum grows (docs/theory/coupling.md).
+    const Real least = spec_.coupling.minimum_void_fraction;
+    const Real limit = std::min(1.0, 2 / (1 + 2 * (1 - least) / least));
+    if (!(spec_.coupling.pending_release < limit)) {
+      wrong_key("coupling.pending_release",
+                fmt::format("{:g} is unstable with minimum_void_fraction {:g}; less than {:.4g}",
+                            spec_.coupling.pending_release, least, limit));
+    }
   }
 
   void check_transfer_grid() {

@@ -28,6 +28,9 @@ struct DiameterRange {
 };
 DiameterRange diameter_range(const CaseSpec& spec);
 
+/// Smallest width of a periodic domain [m]: no particle may meet two images of another one.
+Real least_periodic_width(const CaseSpec& spec);
+
 /// Largest stable particle step of the case [s], see dem::compute_time_step_bound; infinite if nothing can touch.
 struct StepBound {
   Real bound = 0, rayleigh_time = 0, contact_time = 0;  ///< [s]

@@ -172,7 +172,7 @@ struct ProbeSpec {
   std::optional<Index> particle;  ///< id
   bool bed = false;
   std::vector<std::string> quantities;
-  Real every = 0;  ///< [s]
+  Real every = 1e-3;  ///< [s]
 };
 
 /// Distribution of a particle quantity at given times.

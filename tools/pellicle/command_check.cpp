@@ -1,10 +1,15 @@
 #include <fmt/format.h>
+#include <Kokkos_Core.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
-#include "core/time_control.hpp"
+#include "cfd/gas_solver.hpp"
+#include "core/error.hpp"
+#include "dem/engine.hpp"
+#include "tools/pellicle/build_case.hpp"
 #include "tools/pellicle/case_checks.hpp"
 #include "tools/pellicle/case_file.hpp"
 #include "tools/pellicle/commands.hpp"
@@ -114,8 +119,28 @@ std::string describe_case_text(const CaseSpec& spec) {
   return fmt::format("{}\n{}", spec.title, facts.text());
 }
 
+namespace {
+
+/// Builds what a run would build, so that all that can be wrong with the case shows.
+void try_to_build(const CaseSpec& spec) {
+  const Kokkos::ScopeGuard kokkos(Kokkos::InitializationSettings().set_disable_warnings(true));
+  try {
+    if (!spec.particles.empty()) {
+      dem::Engine particles(make_engine_setup(spec, spec.time.particle_step));
+      particles.set_particles(make_particles(spec));
+    }
+    if (spec.gas)
+      cfd::GasSolver(make_grid(spec.gas->grid, spec.domain), spec.gas->options, spec.gas->boundaries);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", spec.file, error.what()));
+  }
+}
+
+}  // namespace
+
 int check_command(const std::string& case_file, const std::vector<std::string>& overrides) {
   const CaseSpec spec = load_case(case_file, overrides);
+  try_to_build(spec);
   fmt::print("{}", describe_case_text(spec));
   for (const auto& warning : spec.warnings) fmt::print("warning: {}\n", warning);
   fmt::print("{}: nothing wrong\n", case_file);

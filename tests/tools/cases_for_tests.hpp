@@ -1,0 +1,88 @@
+// Case files that between them give every key a value other than its default.
+#pragma once
+
+namespace pellicle::tests {
+
+inline constexpr const char* spouted_bed_case = R"(title: "a bed, with everything"
+seed: 42
+domain: {min: [0, 0, 0], max: ["40 mm", "10 mm", "100 mm"], periodic: [y]}
+gravity: [0.1, 0, -9.8]
+time: {end: "2 s", gas_step: "0.1 ms", particle_step: "5 us", impact_speed: "3 m/s", settle: "0.1 s",
+       allow_large_step: true}
+materials:
+  glass: {density: "2.5 g/cm3", youngs_modulus: "10 MPa", poisson_ratio: 0.22}
+  steel: {density: 7800, youngs_modulus: 2e9, poisson_ratio: 0.3}
+walls:
+  - {name: sides, box: domain, open: [top, right], material: acrylic, velocity: [0, 0.5, 0]}
+  - {name: floor, plane: {point: [0, 0, "1 mm"], normal: [0, 0, 2]}, material: steel, velocity: [0.1, 0, 0]}
+contacts:
+  model: {normal: hertz, tangential: viscous_coulomb, rolling: none, clip: false}
+  overlap_limit: 0.3
+  pairs:
+    - {between: [glass, glass], restitution: 0.97, sliding_friction: 0.3, rolling_friction: 0.01}
+    - {between: [acrylic, glass], restitution: 0.9, sliding_friction: 0.2}
+    - {between: [glass, steel], restitution: 0.8, sliding_friction: 0.1}
+particles:
+  - {material: glass, count: 100, diameter: "2 mm", velocity: [0, 0, -0.1], spin: [1, 2, 3],
+     fill: {box: {min: [0, 0, "10 mm"], max: ["40 mm", "10 mm", "60 mm"]}, pattern: lattice}}
+  - {material: glass, total_mass: "1 g", diameter: "1.5 mm",
+     fill: {cylinder: {from: ["20 mm", "5 mm", "60 mm"], to: ["20 mm", "5 mm", "95 mm"], radius: "5 mm"}}}
+  - {material: glass, diameter: "1 mm", fill: {box: {min: [0, 0, "61 mm"], max: ["10 mm", "10 mm", "70 mm"]},
+                                              solids_fraction: "10 %"}}
+  - material: glass
+    fixed: true
+    list:
+      - {position: ["20 mm", "5 mm", "97 mm"], velocity: [0, 0, 1], spin: [0, 1, 0], diameter: "2 mm", fixed: false}
+      - {position: ["25 mm", "5 mm", "97 mm"], diameter: "3 mm"}
+gas:
+  density: 1.2
+  viscosity: "18 uPa s"
+  velocity: [0, 0, 0.5]
+  body_force: [0, 0, "5 Pa/m"]
+  grid: {cells: [8, 2, 20], growth: [1, 1, 1.05]}
+  convection: upwind
+  boundaries:
+    - {name: jet, on: bottom, region: {box: {min: ["15 mm", 0, 0], max: ["25 mm", "10 mm", 0]}}, inlet: {velocity: "10 m/s"}}
+    - {name: plate, on: bottom, inlet: {flow_rate: "1 m3/h"}}
+    - {name: belt, on: left, wall: {velocity: [0, 0, 1]}}
+    - {name: mirror, on: right, region: {box: {min: ["40 mm", 0, 0], max: ["40 mm", "10 mm", "50 mm"]}}, symmetry: {}}
+    - {name: slip, on: right, free_slip: {}}
+    - {name: top, on: top, outlet: {pressure: "1 kPa"}}
+  solver: {pressure_tolerance: 1e-9, loose_pressure_tolerance: 1e-2, momentum_tolerance: 1e-8, outer_tolerance: 1e-5,
+           max_outer_iterations: 4, max_linear_iterations: 100, velocity_relaxation: 0.9, pressure_solver: amgcl}
+coupling: {drag: koch_hill, deposition: centroid, transfer_grid: {cell_size: "5 mm"}, exchange: explicit,
+           pressure_gradient_force: false, coefficients: substep, minimum_void_fraction: 0.4, pending_release: 0.2}
+output:
+  checkpoint: {every: "0.1 s"}
+  snapshots: {every: "0.05 s", particles: [velocity, speed], gas: [pressure]}
+  lines:
+    - {name: low, from: [0, "5 mm", "20 mm"], to: ["40 mm", "5 mm", "20 mm"], points: 8, depth_average: y,
+       thickness: "4 mm", quantity: particle_velocity_z, average: {from: "0.5 s", to: "1.5 s"}}
+    - {name: high, from: [0, "5 mm", "50 mm"], to: ["40 mm", "5 mm", "50 mm"], points: 10, quantity: gas_speed}
+  probes:
+    - {name: centre, point: ["20 mm", "5 mm", "30 mm"], quantities: [pressure, void_fraction], every: "2 ms"}
+    - {name: bead, particle: 7}
+    - {name: whole, bed: {}}
+  histograms:
+    - {name: speeds, quantity: particle_speed, bins: 20, min: 0, max: 2, weight: mass, every: "0.5 s"}
+)";
+
+/// The same domain with cells given by their faces; gas alone.
+inline constexpr const char* channel_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1], periodic: [x]}
+time: {end: 1, gas_step: 0.01}
+gas:
+  density: 1
+  viscosity: 0.01
+  grid:
+    faces: {x: [0, 0.5, 1], y: [0, 0.1, 0.4, 1], z: [0, 1]}
+)";
+
+/// Two particles and nothing else.
+inline constexpr const char* two_particles_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
+time: {end: 0.1, particle_step: 1e-5}
+materials: {glass: {density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.22}}
+contacts: {pairs: [{between: [glass, glass], restitution: 0.9, sliding_friction: 0.3}]}
+particles: [{material: glass, list: [{position: [0.5, 0.5, 0.5], diameter: 0.01}, {position: [0.5, 0.5, 0.6], diameter: 0.01}]}]
+)";
+
+}  // namespace pellicle::tests
