@@ -28,12 +28,14 @@ enum class PressureSolver {
 };
 
 struct GasSolverOptions {
-  Real pressure_tolerance = 1e-11;  ///< of the last pressure solve: sum of |mass residuals| / gas throughput
+  Real pressure_tolerance =
+      1e-10;  ///< of a step's last pressure solve: sum of |mass residuals| / gas throughput
   Real loose_pressure_tolerance =
-      1e-3;                        ///< of the pressure solves before the last: reduction of the residual
-  Real momentum_tolerance = 1e-9;  ///< relative to the momentum the gas exchanges in the step
-  Real outer_tolerance = 1e-6;     ///< relative change of the face velocities that ends the outer iterations
-  int max_outer_iterations = 2;    ///< of the SIMPLEC loop, each one pressure and one momentum solve
+      1e-2;  ///< of the pressure solves before the last: reduction of the residual
+  Real momentum_tolerance =
+      1e-9;  ///< relative, of a step's last momentum solve; those before: 100 times as much
+  Real outer_tolerance = 1e-6;   ///< relative change of the face velocities that ends the outer iterations
+  int max_outer_iterations = 2;  ///< of the SIMPLEC loop, each one pressure and one momentum solve
   int max_linear_iterations = 500;
   Real velocity_relaxation = 1;  ///< in (0, 1]; below 1 only for steps of many Courant numbers
   PressureSolver pressure_solver = PressureSolver::multigrid;

@@ -226,7 +226,7 @@ void GasSolver::Impl::solve_pressure(Real dt, bool tightly, StepReport& report) 
   report.continuity_residual = throughput > 0 ? linear.residual / throughput : 0;
 }
 
-void GasSolver::Impl::solve_momentum(Real dt, StepReport& report) {
+void GasSolver::Impl::solve_momentum(Real dt, bool tightly, StepReport& report) {
   const Index n = fields.cells;
   faces.compute_cell_force(fields, momentum, cell_force);
   for_entries("cfd::gas_solver::cell_force", n, [&](Index c) {
@@ -235,7 +235,8 @@ void GasSolver::Impl::solve_momentum(Real dt, StepReport& report) {
       cell_force(e) += mass * fields.velocity_old(e) + relaxation(e) * fields.velocity(e);
     }
   });
-  const MomentumReport linear = momentum.solve(fields, inertia, cell_force);
+  const MomentumReport linear =
+      momentum.solve(fields, inertia, cell_force, options.solver.momentum_tolerance * (tightly ? 1 : 100));
   report.momentum_iterations += linear.iterations;
   report.momentum_residual = linear.residual;
   if (!linear.converged) {
@@ -413,10 +414,12 @@ StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
     const bool nearly_there =
         report.outer_iterations > 1 && report.velocity_change < 10 * options.outer_tolerance;
     for (std::size_t a = 0; a < 3; ++a) Kokkos::deep_copy(s.before[a], s.fields.superficial[a]);
+    // Later iterations go on with the coefficients of the momentum equation just solved.
+    if (report.outer_iterations == 1) s.assemble_momentum(dt);
+    const bool tightly = last || nearly_there;
+    s.solve_pressure(dt, tightly, report);
     s.assemble_momentum(dt);
-    s.solve_pressure(dt, last || nearly_there, report);
-    s.assemble_momentum(dt);
-    s.solve_momentum(dt, report);
+    s.solve_momentum(dt, tightly, report);
     report.velocity_change = s.face_velocity_change();
     done = last || (nearly_there && report.velocity_change < options.outer_tolerance);
   }

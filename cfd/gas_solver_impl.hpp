@@ -24,7 +24,7 @@ struct GasSolver::Impl {
   Real compute_continuity_residual(Real dt);
   Real gas_throughput(Real dt);
   void solve_pressure(Real dt, bool tightly, StepReport& report);
-  void solve_momentum(Real dt, StepReport& report);
+  void solve_momentum(Real dt, bool tightly, StepReport& report);
   void update_mass_flux();
   Real face_velocity_change() const;
   void finish_step(Real dt, StepReport& report);

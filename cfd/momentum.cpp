@@ -241,7 +241,7 @@ void MomentumEquation::compute_influx(const GasFields& fields, const HostArray<R
 
 // BiCGStab (van der Vorst 1992) on the system divided by its diagonal, the three components together.
 MomentumReport MomentumEquation::solve(const GasFields& fields, const HostArray<Real>& inertia,
-                                       const HostArray<Real>& force) {
+                                       const HostArray<Real>& force, Real tolerance) {
   const Index n = geometry_.stencil.cells();
   const Index size = 3 * n;
   Real* u = fields.velocity.data();
@@ -251,9 +251,8 @@ MomentumReport MomentumEquation::solve(const GasFields& fields, const HostArray<
   const Real* source = source_.data();
   const Real* given = force.data();
   const Real* mass = inertia.data();
-  // Where nothing acts (no time step, no neighbours) the velocity stays.
   for_entries("cfd::momentum::invert", n, [&](Index c) {
-    for (Index e = c; e < size; e += n) inverse[e] = 1 / (own[e] + mass[c]);
+    for (Index e = c; e < size; e += n) inverse[e] = 1 / (own[e] + mass[e]);
   });
   apply("cfd::momentum::start", u, [&](Index e, Real near) {
     t[e] = (source[e] + given[e]) * inverse[e];
@@ -267,7 +266,7 @@ MomentumReport MomentumEquation::solve(const GasFields& fields, const HostArray<
   const Real scale = std::max(norm_of("cfd::momentum::norm_b", t), norm_of("cfd::momentum::norm_u", u));
   MomentumReport report;
   Real residual = norm_of("cfd::momentum::norm_r", r);
-  const Real target = options_.solver.momentum_tolerance * scale;
+  const Real target = tolerance * scale;
   Real rho = residual * residual;
   while (residual > target && report.iterations < options_.solver.max_linear_iterations) {
     apply("cfd::momentum::image_p", p, [&](Index e, Real near) { v[e] = p[e] - near * inverse[e]; });

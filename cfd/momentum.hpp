@@ -31,9 +31,10 @@ class MomentumEquation {
   void assemble(const GasFields& fields);
   /// 3 cells: sum of near u_N + source [N], from the velocities at hand.
   void compute_influx(const GasFields& fields, const HostArray<Real>& influx) const;
-  /// Solves for the velocity in `fields`. `inertia` [kg/s] per cell is added to the diagonal, `force` [N], 3 cells,
+  /// Solves for the velocity in `fields`. `inertia` [kg/s], 3 cells, is added to the diagonal, `force` [N], 3 cells,
   /// to the right-hand side.
-  MomentumReport solve(const GasFields& fields, const HostArray<Real>& inertia, const HostArray<Real>& force);
+  MomentumReport solve(const GasFields& fields, const HostArray<Real>& inertia, const HostArray<Real>& force,
+                       Real tolerance);
 
   /// Coefficients of u itself, 3 cells [kg/s].
   const HostArray<Real>& own() const { return own_; }

@@ -14,6 +14,9 @@ namespace pellicle::cfd {
 
 namespace {
 
+// Axes whose mean conductance is at least this share of the strongest are joined. Measured on a bed of 29 x 2 x 64
+// cells and a vessel of 32 x 32 x 100: with 0.7, 10 iterations reduce the residual by 1e10, with 0.4 twice as many.
+constexpr Real strong_coupling = 0.7;
 constexpr Index direct_limit = 40;  // unknowns of the coarsest level, solved by Cholesky
 
 struct Level {
@@ -97,7 +100,7 @@ class Multigrid final : public PressurePreconditioner {
       strongest = std::max(strongest, mean[static_cast<std::size_t>(a)]);
     }
     for (std::size_t a = 0; a < 3; ++a) {
-      level.coarsen[a] = s.n[static_cast<int>(a)] > 1 && mean[a] >= 0.4 * strongest;
+      level.coarsen[a] = s.n[static_cast<int>(a)] > 1 && mean[a] >= strong_coupling * strongest;
     }
   }
 

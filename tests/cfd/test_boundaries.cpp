@@ -1,0 +1,142 @@
+// Boundary regions: areas to the last bit, flows as asked, messages.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "cfd/boundary_pieces.hpp"
+#include "core/error.hpp"
+#include "tests/cfd/gas_for_tests.hpp"
+
+namespace pellicle::cfd {
+namespace {
+
+const std::string here = "bed.yaml:12: gas.boundaries.1";
+
+std::string message_of(const CartesianGrid& grid, const std::vector<BoundaryPatch>& patches) {
+  try {
+    GasSolver solver(grid, make_air(), patches);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+const CartesianGrid grid_of_7(Box{{0, 0, 0}, {0.07, 0.02, 0.1}}, {7, 2, 10});
+
+// Edges of the slot at 0.0333 and 0.0381 cut two faces of 0.01; the flow through the boundary faces must be that of
+// the slot's own area.
+TEST(Boundaries, InletWhoseEdgesCutFacesDeliversItsFlow) {
+  const Box slot{{0.0333, -1, -1}, {0.0381, 1, 1}};
+  for (const bool by_rate : {false, true}) {
+    const Inlet inlet = by_rate ? Inlet{{}, 1e-3} : Inlet{40.0, {}};
+    GasSolver solver(grid_of_7, make_air(),
+                     {{"slot", Side::z_min, slot, inlet, here},
+                      {"rest", Side::z_min, {}, Inlet{2.0, {}}, here},
+                      {"top", Side::z_max, {}, Outlet{0}, here}});
+    const auto exchange = make_empty_exchange(grid_of_7);
+    advance(solver, exchange, 1e-4, 10);
+    const Real slot_area = (0.0381 - 0.0333) * 0.02;
+    const Real slot_flow = by_rate ? 1e-3 : 40 * slot_area;
+    const Real rest_flow = 2.0 * (0.07 * 0.02 - slot_area);
+    // Round-off of sums of a dozen areas.
+    EXPECT_NEAR(solver.balance().patches[0].mass_in / (1.2 * 1e-3 * slot_flow), 1, 1e-13);
+    EXPECT_NEAR(solver.balance().patches[1].mass_in / (1.2 * 1e-3 * rest_flow), 1, 1e-13);
+    EXPECT_EQ(solver.balance().patches[0].mass_out, 0);
+    Real bottom = 0;
+    for (Index j = 0; j < 2; ++j) {
+      for (Index i = 0; i < 7; ++i) bottom += solver.state().volume_flux[2](i + 7 * j);
+    }
+    EXPECT_NEAR(bottom / (slot_flow + rest_flow), 1, 1e-13);
+    EXPECT_NEAR(solver.balance().patches[2].mass_out / (1.2 * 1e-3 * (slot_flow + rest_flow)), 1, 1e-9);
+  }
+}
+
+TEST(Boundaries, PiecesAddUpToTheFaces) {
+  const FlowGeometry geometry(grid_of_7);
+  const Boundaries cut = cut_boundaries(
+      geometry, {{"a", Side::z_min, Box{{0.0333, 0.003, 0}, {0.0381, 0.012, 0}}, Inlet{1.0, {}}, here},
+                 {"b", Side::z_min, Box{{0.0381, 0, 0}, {0.052, 0.02, 0}}, Inlet{2.0, {}}, here},
+                 {"out", Side::x_max, {}, Outlet{3}, here}});
+  std::array<std::vector<Real>, 3> sum;
+  for (std::size_t a = 0; a < 3; ++a) sum[a].assign(geometry.area[a].extent(0), 0);
+  Real inlet_area = 0;
+  for (const BoundaryPiece& piece : cut.pieces) {
+    sum[static_cast<std::size_t>(piece.axis)][static_cast<std::size_t>(piece.face)] += piece.area;
+    if (piece.patch == 0) inlet_area += piece.area;
+  }
+  EXPECT_NEAR(inlet_area, 0.0048 * 0.009, 1e-18);
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t f = 0; f < sum[a].size(); ++f) {
+      if (sum[a][f] > 0) {
+        EXPECT_NEAR(sum[a][f] / geometry.area[a](f), 1, 1e-14);
+      }
+    }
+  }
+}
+
+TEST(Boundaries, MessagesSayWhereAndWhat) {
+  const BoundaryPatch top{"top", Side::z_max, {}, Outlet{0}, "bed.yaml:20: gas.boundaries.9"};
+  const auto expect = [&](const std::vector<BoundaryPatch>& patches, const std::string& what,
+                          const CartesianGrid& grid) {
+    const std::string message = message_of(grid, patches);
+    EXPECT_NE(message.find(what), std::string::npos) << message;
+    EXPECT_EQ(message.find("bed.yaml:"), 0u) << message;
+    EXPECT_NE(message.find("allowed: "), std::string::npos) << message;
+  };
+  const auto region = [](Real from, Real to) { return Box{{from, -1, -1}, {to, 1, 1}}; };
+  expect({{"a", Side::z_min, region(0, 0.03), Inlet{1.0, {}}, here},
+          {"b", Side::z_min, region(0.02, 0.05), Inlet{1.0, {}}, here},
+          top},
+         "'b' overlaps boundary 'a' on the bottom side", grid_of_7);
+  expect({{"a", Side::z_min, region(0.08, 0.09), Inlet{1.0, {}}, here}, top},
+         "covers no face of the bottom side", grid_of_7);
+  expect({{"a", Side::z_min, Box{{0, 0, 0.05}, {1, 1, 0.06}}, Inlet{1.0, {}}, here}, top}, "covers no face",
+         grid_of_7);
+  expect(
+      {{"a", Side::z_min, region(-1, 1), Inlet{1.0, {}}, here}, {"b", Side::z_min, {}, NoSlip{}, here}, top},
+      "'b' covers no face", grid_of_7);
+  expect({{"a", Side::z_min, {}, Inlet{1.0, {}}, here}, {"b", Side::z_min, {}, NoSlip{}, here}, top},
+         "takes the rest of the bottom side, as 'a' does", grid_of_7);
+  expect({{"a", Side::z_min, {}, Inlet{1.0, {}}, here}}, "has no way out", grid_of_7);
+  expect({{"a", Side::z_min, {}, Inlet{1.0, 2.0}, here}, top}, "exactly one of velocity and flow_rate",
+         grid_of_7);
+  expect({{"a", Side::z_min, {}, Inlet{}, here}, top}, "exactly one of velocity and flow_rate", grid_of_7);
+  expect({{"a", Side::x_min, {}, NoSlip{{1, 0, 0}}, here}}, "moves at right angles", grid_of_7);
+  const CartesianGrid periodic(grid_of_7.box(), grid_of_7.cells(), {true, false, false});
+  expect({{"a", Side::x_max, {}, Outlet{0}, here}}, "where the domain is periodic", periodic);
+}
+
+// A closed box with one opening for what comes in elsewhere: an inlet that draws as much as another gives needs no
+// outlet.
+TEST(Boundaries, SuctionMayBalanceInflow) {
+  GasSolver solver(
+      grid_of_7, make_air(),
+      {{"in", Side::z_min, {}, Inlet{1.0, {}}, here}, {"suction", Side::z_max, {}, Inlet{-1.0, {}}, here}});
+  const auto exchange = make_empty_exchange(grid_of_7);
+  advance(solver, exchange, 1e-3, 50);
+  EXPECT_LT(solver.balance().mass_defect(), 1e-12);
+  EXPECT_GT(solver.state().velocity(grid_of_7.index(3, 0, 5)).z, 0.9);
+}
+
+// Couette flow is linear: exact on any grid, wall shear included, for each moving side.
+TEST(Boundaries, MovingWallDragsTheGasLinearly) {
+  const CartesianGrid grid(std::array<std::vector<Real>, 3>{{{0, 1}, make_stretched_faces(2, 9), {0, 1}}},
+                           {true, false, true});
+  GasOptions options = make_air();
+  options.viscosity = 1;
+  options.density = 1;
+  make_tight(options);
+  for (const Side side : {Side::y_min, Side::y_max}) {
+    GasSolver solver(grid, options, {{"belt", side, {}, NoSlip{{3, 0, -1}}, here}});
+    advance(solver, make_empty_exchange(grid), 100, 20);
+    for (Index j = 0; j < 9; ++j) {
+      const Real share = side == Side::y_max ? grid.center(1, j) / 2 : 1 - grid.center(1, j) / 2;
+      EXPECT_NEAR(solver.state().velocity(j).x, 3 * share, 1e-10);
+      EXPECT_NEAR(solver.state().velocity(j).z, -share, 1e-10);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pellicle::cfd
