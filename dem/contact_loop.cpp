@@ -49,6 +49,7 @@ KOKKOS_INLINE_FUNCTION void add_wall_contacts(const ContactInput& in, const Laws
     ++contacts;
     ++report.touching_walls;
     report.largest_overlap = Kokkos::max(report.largest_overlap, c.overlap / self.radius);
+    report.largest_depth = Kokkos::max(report.largest_depth, c.overlap);
     report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
   }
 }
@@ -117,6 +118,7 @@ struct ParticleContactKernel {
       ++report.touching;
       report.largest_overlap =
           Kokkos::max(report.largest_overlap, c.overlap / Kokkos::min(a.radius, b.radius));
+      report.largest_depth = Kokkos::max(report.largest_depth, c.overlap);
       report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
     }
     if (ma.inverse_mass == 0) report.support_impulse += in.kick * sum.force;
@@ -252,8 +254,9 @@ struct BlockContactKernel {
     const PairParameters only = table[0];
     const Laws law = laws;
     Real largest_overlap = report.largest_overlap;
+    Real largest_depth = report.largest_depth;
     Real largest_approach = report.largest_approach_speed;
-#pragma omp simd reduction(max : largest_overlap, largest_approach)
+#pragma omp simd reduction(max : largest_overlap, largest_depth, largest_approach)
     for (int c = 0; c < n; ++c) {
       ContactState state;
       const ContactForce f = pair_force(
@@ -269,9 +272,11 @@ struct BlockContactKernel {
       const Real smaller = b.ri[c] < b.rj[c] ? b.ri[c] : b.rj[c];
       const Real relative = state.overlap / smaller;
       largest_overlap = relative > largest_overlap ? relative : largest_overlap;
+      largest_depth = state.overlap > largest_depth ? state.overlap : largest_depth;
       largest_approach = state.approach_speed > largest_approach ? state.approach_speed : largest_approach;
     }
     report.largest_overlap = largest_overlap;
+    report.largest_depth = largest_depth;
     report.largest_approach_speed = largest_approach;
     for (int c = 0; c < n; ++c) {
       Accumulator& s = sum[b.owner[c]];

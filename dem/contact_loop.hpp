@@ -14,6 +14,7 @@ namespace pellicle::dem {
 /// counts of the last substep.
 struct BlockReport {
   Real largest_overlap = 0;         ///< largest δ/R of the smaller particle [-]
+  Real largest_depth = 0;           ///< largest δ [m]
   Real largest_approach_speed = 0;  ///< [m/s]
   Vec3 wall_impulse{};              ///< that walls gave to moving particles [N s]
   Vec3 support_impulse{};           ///< that contacts gave to fixed particles [N s]

@@ -305,6 +305,7 @@ ContactReport Engine::collect_report() {
   for (Index b = 0; b < static_cast<Index>(host.extent(0)); ++b) {
     const BlockReport& r = host(b);
     sum.largest_overlap = std::max(sum.largest_overlap, r.largest_overlap);
+    sum.largest_depth = std::max(sum.largest_depth, r.largest_depth);
     sum.largest_approach_speed = std::max(sum.largest_approach_speed, r.largest_approach_speed);
     sum.wall_impulse += r.wall_impulse;
     sum.support_impulse += r.support_impulse;

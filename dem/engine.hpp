@@ -42,6 +42,7 @@ struct EngineSetup {
 /// Contacts since the last call of `collect_report`, and how many touch now.
 struct ContactReport {
   Real largest_overlap = 0;         ///< δ/R of the smaller particle [-]
+  Real largest_depth = 0;           ///< δ [m]
   Real largest_approach_speed = 0;  ///< [m/s]
   Vec3 wall_impulse{};              ///< walls to moving particles [N s]
   Vec3 support_impulse{};           ///< contacts to fixed particles [N s]

@@ -81,6 +81,7 @@ void Simulation::resume() {
   settled_wall_ = file.read_vec3("run/settled_wall");
   settled_volume_time_ = file.read_double("run/settled_volume_time");
   summary_.largest_overlap = file.read_double("run/largest_overlap");
+  summary_.largest_overlap_ratio = file.read_double("run/largest_overlap_ratio");
   summary_.largest_impact_speed = file.read_double("run/largest_impact_speed");
   summary_.particle_steps = file.read_double("run/particle_steps");
   // Wall times are no part of the state: they come from the summary of the run that is resumed.
@@ -195,7 +196,8 @@ void Simulation::watch_contacts() {
   contacts_ = particles_->collect_report();
   wall_impulse_ += contacts_.wall_impulse;
   support_impulse_ += contacts_.support_impulse;
-  summary_.largest_overlap = std::max(summary_.largest_overlap, contacts_.largest_overlap);
+  summary_.largest_overlap = std::max(summary_.largest_overlap, contacts_.largest_depth);
+  summary_.largest_overlap_ratio = std::max(summary_.largest_overlap_ratio, contacts_.largest_overlap);
   summary_.largest_impact_speed = std::max(summary_.largest_impact_speed, contacts_.largest_approach_speed);
 }
 
@@ -205,6 +207,7 @@ void Simulation::update_ledger() {
   if (time_.step() < 0) return;
   Vec3 stock{}, through{}, sources{};
   Real gross = 0;
+  Real pending = 0;
   if (gas_) {
     const cfd::GasBalance& gas = gas_->balance();
     ledger_.set_stock(Conserved::gas_mass, gas.mass);
@@ -218,6 +221,7 @@ void Simulation::update_ledger() {
   if (exchange_) {
     stock += exchange_->totals().pending;
     gross += exchange_->totals().gross;
+    pending = norm(exchange_->totals().pending);
     if (exchange_->options().exchange == coupling::Exchange::one_way) {
       // The gas gives without losing: a source of momentum, by choice of the user.
       sources += exchange_->totals().particles_received;
@@ -235,6 +239,7 @@ void Simulation::update_ledger() {
           (-spec_.gas->options.density * (particles_->volume_time() - settled_volume_time_)) * spec_.gravity;
     }
   }
+  summary_.instantaneous_momentum_defect = gross > 0 ? pending / gross : 0;
   ledger_.set_stock(Conserved::momentum, stock);
   ledger_.set_totals(Conserved::momentum, through, sources, gross);
 }
@@ -250,7 +255,7 @@ void Simulation::write_outputs(bool last) {
   OutputState state;
   state.step = time_.step();
   state.time = time_.time();
-  state.contacts = {contacts_per_particle(), summary_.largest_overlap};
+  state.contacts = {contacts_per_particle(), summary_.largest_overlap_ratio};
   GasFields fields;
   if (particles_) state.particles = &particles_->particles();
   if (gas_) {
@@ -283,6 +288,7 @@ void Simulation::write_checkpoint() {
   file.write("run/settled_wall", settled_wall_);
   file.write("run/settled_volume_time", settled_volume_time_);
   file.write("run/largest_overlap", summary_.largest_overlap);
+  file.write("run/largest_overlap_ratio", summary_.largest_overlap_ratio);
   file.write("run/largest_impact_speed", summary_.largest_impact_speed);
   file.write("run/particle_steps", summary_.particle_steps);
   file.close();
@@ -313,7 +319,7 @@ void Simulation::write_summary(const std::string& status, const std::string& mes
 std::string Simulation::describe_progress() const {
   if (!particles_) return {};
   return std::to_string(particles_->particles().count) + " particles, largest overlap " +
-         std::to_string(100 * summary_.largest_overlap) + " % of the radius";
+         fmt::format("{:.1f}", 100 * summary_.largest_overlap_ratio) + " % of the radius";
 }
 
 }  // namespace pellicle::tools
