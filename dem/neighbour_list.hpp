@@ -32,8 +32,8 @@ struct Domain {
 /// How far each particle may move before the lists must be rebuilt, in terms of what it is doing: a slow particle in
 /// the annulus gets little, a fast one in the spout more, so that one fast particle does not fatten every list.
 struct SkinOptions {
-  Real steps = 14;                ///< steps that a particle's own speed should last
-  Real smallest_fraction = 0.04;  ///< of the smallest radius
+  Real steps = 26;                ///< steps that a particle's own speed should last
+  Real smallest_fraction = 0.10;  ///< of the smallest radius
   Real largest_fraction = 0.40;   ///< of the largest radius
 };
 
