@@ -13,9 +13,6 @@ class Catalogue : public Keys {
   void exactly_one(const std::vector<std::string_view>& names) override {
     section_.exactly_one.emplace_back(names.begin(), names.end());
   }
-  void at_most_one(const std::vector<std::string_view>& names) override {
-    section_.at_most_one.emplace_back(names.begin(), names.end());
-  }
 
  private:
   KeyInfo& add(const Key& key, KeyType type, const std::string& default_text) {

@@ -29,7 +29,6 @@ struct KeyInfo {
   std::vector<KeyInfo> children;   ///< of a section
   std::vector<std::vector<std::string>>
       exactly_one;  ///< of a section: groups of children of which one is given
-  std::vector<std::vector<std::string>> at_most_one;
 };
 
 /// Runs `describe` and returns the keys it declares, as the children of a section without name.

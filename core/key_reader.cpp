@@ -62,13 +62,8 @@ class Reader : public Keys {
   void exactly_one(const std::vector<std::string_view>& names) override {
     const auto there = given_of(names);
     if (there.size() == 1) return;
-    report_alternatives(names, there, "exactly one of");
+    report_alternatives(names, there);
   }
-  void at_most_one(const std::vector<std::string_view>& names) override {
-    const auto there = given_of(names);
-    if (there.size() > 1) report_alternatives(names, there, "at most one of");
-  }
-
   /// To be called when all keys of the section have been described.
   void report_unknown_keys() const {
     if (section_ == nullptr) return;
@@ -121,14 +116,14 @@ class Reader : public Keys {
     return there;
   }
 
-  void report_alternatives(const std::vector<std::string_view>& names, const std::vector<std::string>& there,
-                           std::string_view rule) {
+  void report_alternatives(const std::vector<std::string_view>& names,
+                           const std::vector<std::string>& there) {
     std::string found;
     for (const auto& name : there) found += (found.empty() ? "" : " and ") + name;
     std::string all;
     for (const auto name : names) all += (all.empty() ? "" : ", ") + std::string(name);
-    problem({}, fmt::format("{} {} given; {} {}", there.empty() ? "none" : found,
-                            there.size() > 1 ? "are" : "is", rule, all));
+    problem({}, fmt::format("{} {} given; exactly one of {}", there.empty() ? "none" : found,
+                            there.size() > 1 ? "are" : "is", all));
   }
 
   // Single values. Each reads one node and says whether it could.

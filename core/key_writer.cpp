@@ -33,7 +33,6 @@ class Writer : public Keys {
   std::vector<std::string> lines;
 
   void exactly_one(const std::vector<std::string_view>&) override {}
-  void at_most_one(const std::vector<std::string_view>&) override {}
 
  private:
   void add(const Key& key, const std::string& value, std::string_view unit = {}) {

@@ -101,7 +101,6 @@ class Keys {
   };
   // Rules across the keys of the section.
   virtual void exactly_one(const std::vector<std::string_view>& names) = 0;
-  virtual void at_most_one(const std::vector<std::string_view>& names) = 0;
 
   /// Whether a file is being read, so that values are the user's and may be checked.
   virtual bool reading() const { return false; }

@@ -70,7 +70,6 @@ void describe(Keys& keys, Everything& e) {
     describe_ball(k, ball);
   });
   keys.named<Ball>({"named", "by name"}, e.named, describe_ball);
-  keys.at_most_one({"mark", "maybe"});
 }
 
 struct ReadResult {
@@ -234,8 +233,6 @@ TEST(KeyReader, ChoicesSayWhatThereIs) {
 }
 
 TEST(KeyReader, AlternativesAndMissingKeys) {
-  EXPECT_EQ(problem("mark: {}\nmaybe: {diameter: 1}"),
-            "c.yaml:1: mark and maybe are given; at most one of mark, maybe");
   EXPECT_EQ(problem("maybe:\n  mass: 3"), "c.yaml:1: maybe.diameter: missing; a length greater than 0");
   Real a = 0, b = 0;
   const auto exactly_one = [&](const std::string& text) {
@@ -331,7 +328,6 @@ TEST(KeyCatalogue, SaysWhatWasDeclared) {
   EXPECT_EQ(find("balls").children.size(), 3u);
   EXPECT_TRUE(find("named").is_named);
   EXPECT_EQ(find("maybe").children.front().need, Need::required);
-  EXPECT_EQ(root.at_most_one.front(), (std::vector<std::string>{"mark", "maybe"}));
 }
 
 TEST(Keys, NearestName) {

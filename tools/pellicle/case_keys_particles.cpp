@@ -164,8 +164,8 @@ void describe_population(Keys& keys, PopulationSpec& population, CaseSpec& spec)
   keys.flag({"fixed", "stays in place, is felt by other particles and by the gas"}, population.fixed);
   keys.section<FillSpec>({"fill", "a region to be filled"}, population.fill, describe_fill);
   keys.list<ListedParticleSpec>(
-      {"list", "particles one by one; their ids follow the order of the file"}, Size{1}, population.list,
-      [&](Keys& inner, ListedParticleSpec& particle) {
+      {"list", "particles one by one; ids count them first, then those of fills, in the order of the file"},
+      Size{1}, population.list, [&](Keys& inner, ListedParticleSpec& particle) {
         if (inner.reading()) {
           particle.velocity = population.velocity;
           particle.spin = population.spin;

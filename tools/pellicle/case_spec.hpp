@@ -147,9 +147,9 @@ struct WindowSpec {
 };
 
 struct SnapshotSpec {
-  Real every = 0;                      ///< [s]; 0: none
-  std::vector<std::string> particles;  ///< names of fields
-  std::vector<std::string> gas;
+  Real every = 0;                                                  ///< [s]; 0: none
+  std::vector<std::string> particles{"id", "velocity", "radius"};  ///< names of fields
+  std::vector<std::string> gas{"velocity", "pressure", "void_fraction"};
 };
 
 /// Time-averaged profile along a line: bins of length / points, height `thickness`.

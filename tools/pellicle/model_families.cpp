@@ -63,4 +63,14 @@ const std::vector<ModelFamily>& model_families() {
   return families;
 }
 
+const std::vector<ModelFamily>& quantity_families() {
+  static const std::vector<ModelFamily> families{
+      {"quantities.particles", "Of particles, for lines, histograms and probes of one particle",
+       particle_quantities},
+      {"quantities.gas", "Of the gas, for lines and probes of a point", gas_quantities},
+      {"quantities.bed", "Of the whole bed, for probes", bed_quantities},
+  };
+  return families;
+}
+
 }  // namespace pellicle::tools

@@ -32,5 +32,7 @@ struct ModelFamily {
 
 /// All families, in the order of the case file.
 const std::vector<ModelFamily>& model_families();
+/// What outputs can show, of particles, of the gas, of the bed.
+const std::vector<ModelFamily>& quantity_families();
 
 }  // namespace pellicle::tools

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -102,14 +103,12 @@ Json section_schema(const KeyInfo& section) {
   if (!required.empty()) schema["required"] = required;
   Json rules = Json::array();
   for (const auto& names : section.exactly_one) rules.push_back({{"oneOf", alternatives(names)}});
-  for (const auto& names : section.at_most_one) {
-    Json either = alternatives(names);
-    either.push_back({{"not", {{"anyOf", alternatives(names)}}}});
-    rules.push_back({{"oneOf", either}});
-  }
   if (!rules.empty()) schema["allOf"] = rules;
   return schema;
 }
+
+/// Longer lists of choices are those of quantities, which have a table of their own.
+constexpr std::size_t longest_list_in_a_table = 12;
 
 /// What may be written for a key, for the docs.
 std::string allowed_text(const KeyInfo& key) {
@@ -128,6 +127,10 @@ std::string allowed_text(const KeyInfo& key) {
       one = key.text_rule == core::TextRule::name ? "a name of letters, digits, _ and -" : "a text";
       break;
     case KeyType::choice:
+      if (key.allowed.size() > longest_list_in_a_table) {
+        one = "a [quantity](#quantities)";
+        break;
+      }
       for (const auto& model : key.allowed) one += fmt::format("{}`{}`", one.empty() ? "" : ", ", model.name);
       break;
     case KeyType::mark:
@@ -143,13 +146,18 @@ std::string allowed_text(const KeyInfo& key) {
   }
   if (!key.is_list) return one;
   return fmt::format("a list of {}, each {}{}", core::allowed_size(key.size),
-                     key.type == KeyType::choice ? "one of " : "", one);
+                     key.type == KeyType::choice && !one.starts_with("a ") ? "one of " : "", one);
+}
+
+std::string sentence(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 std::string code(const std::string& text) { return text.empty() ? "" : "`" + text + "`"; }
 
 void add_section(const KeyInfo& section, const std::string& path, std::string& markdown) {
-  if (!path.empty()) markdown += fmt::format("\n### `{}`\n\n{}.\n", path, section.text);
+  if (!path.empty()) markdown += fmt::format("\n### `{}`\n\n{}.\n", path, sentence(section.text));
   const auto rule = [&](std::string_view words, const std::vector<std::string>& names) {
     std::string all;
     for (const auto& name : names) all += (all.empty() ? "" : ", ") + code(name);
@@ -158,7 +166,6 @@ void add_section(const KeyInfo& section, const std::string& path, std::string& m
   for (const auto& names : section.exactly_one) {
     if (names.size() > 1) rule("Exactly one", names);
   }
-  for (const auto& names : section.at_most_one) rule("At most one", names);
   markdown += "\n| key | value | unit | default | meaning |\n|---|---|---|---|---|\n";
   for (const auto& key : section.children) {
     std::string otherwise = key.default_in_words ? key.default_text : code(key.default_text);
@@ -183,18 +190,21 @@ std::string case_schema_json() {
 }
 
 std::string case_schema_markdown() {
-  std::string markdown;
+  std::string markdown = "## Keys\n";
   add_section(all_keys(), "", markdown);
-  return markdown;
-}
-
-std::string models_markdown() {
-  std::string markdown;
+  markdown += "\n## Models\n";
   for (const auto& family : model_families()) {
     markdown += fmt::format("\n### `{}`\n\n{}.\n\n| name | what it is | source |\n|---|---|---|\n",
                             family.key, family.title);
     for (const auto& model : family.models) {
       markdown += fmt::format("| `{}` | {} | {} |\n", model.name, model.description, model.source);
+    }
+  }
+  markdown += "\n## Quantities\n";
+  for (const auto& family : quantity_families()) {
+    markdown += fmt::format("\n{}:\n\n| name | what it is |\n|---|---|\n", family.title);
+    for (const auto& quantity : family.models) {
+      markdown += fmt::format("| `{}` | {} |\n", quantity.name, quantity.description);
     }
   }
   return markdown;

@@ -8,10 +8,8 @@ namespace pellicle::tools {
 /// JSON schema (draft 2020-12) of case files, for editors that complete and check YAML.
 std::string case_schema_json();
 
-/// Tables of all keys, section by section, in Markdown: the second half of docs/case_file.md.
+/// Tables of all keys, section by section, of all models and of all quantities, in Markdown: the second half of
+/// docs/case_file.md.
 std::string case_schema_markdown();
-
-/// All families of models with their descriptions and sources, in Markdown.
-std::string models_markdown();
 
 }  // namespace pellicle::tools
