@@ -70,7 +70,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
     errno = kept;
     fail("cannot be written", path);
   }
-  publish_file(temporary, path);
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be replaced", path);
 }
 
 }  // namespace pellicle::core

@@ -8,12 +8,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 
 namespace pellicle::core {
 
 namespace {
+
+constexpr std::size_t most_early_messages =
+    1000;  // a program that opens no file must not collect them forever
 
 bool stdout_is_terminal() {
   const char* terminal = std::getenv("TERM");
@@ -79,6 +84,7 @@ struct Log::Impl {
   std::shared_ptr<ConsoleSink> console = std::make_shared<ConsoleSink>(terminal);
   spdlog::logger console_logger{"console", console};
   std::unique_ptr<spdlog::logger> file_logger;
+  std::vector<std::pair<Level, std::string>> early;  ///< messages for a file that is not open yet
 };
 
 Log::Log() : impl_(new Impl) { impl_->console_logger.set_level(spdlog::level::info); }
@@ -92,6 +98,8 @@ void Log::message(Level level, std::string_view text) {
 void Log::file_only(Level level, std::string_view text) {
   if (impl_->file_logger) {
     impl_->file_logger->log(spdlog_level(level), spdlog::string_view_t(text.data(), text.size()));
+  } else if (impl_->early.size() < most_early_messages) {
+    impl_->early.emplace_back(level, text);
   }
 }
 
@@ -107,6 +115,7 @@ void Log::open_file(const std::filesystem::path& path) {
   // A run that is killed leaves every line behind. A full disk must not end the program from inside a log call.
   impl_->file_logger->flush_on(spdlog::level::info);
   impl_->file_logger->set_error_handler([](const std::string&) {});
+  for (const auto& [level, text] : std::exchange(impl_->early, {})) file_only(level, text);
 }
 
 void Log::close_file() { impl_->file_logger.reset(); }

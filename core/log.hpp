@@ -35,8 +35,8 @@ class Log {
   }
   void message(Level level, std::string_view text);
 
-  /// Also writes to this file from now on, each line with date, time and level; throws RunError if it cannot.
-  /// An existing file is continued.
+  /// Also writes to this file from now on, each line with date, time and level, after the messages since the start of
+  /// the program (or since the last file was closed); throws RunError if it cannot. An existing file is continued.
   void open_file(const std::filesystem::path& path);
   void close_file();
   /// To the file alone.

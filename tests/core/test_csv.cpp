@@ -73,6 +73,7 @@ TEST(Files, ReplacedAsAWholeOrNotAtAll) {
 TEST(Log, FileGetsLevelsAndIsContinued) {
   TemporaryFolder folder;
   log().set_console_level(Log::Level::error);
+  log().info("before the folder is known");
   log().open_file(folder / "run.log");
   log().info("{} particles", 12);
   log().debug("hidden");
@@ -83,7 +84,11 @@ TEST(Log, FileGetsLevelsAndIsContinued) {
   log().info("after");
   log().set_console_level(Log::Level::info);
   const std::string text = read_file(folder / "run.log");
-  EXPECT_NE(text.find("info: 12 particles\n"), std::string::npos) << text;
+  const auto early = text.find("info: before the folder is known\n"),
+             later = text.find("info: 12 particles\n");
+  EXPECT_NE(early, std::string::npos) << text;
+  EXPECT_NE(later, std::string::npos) << text;
+  EXPECT_LT(early, later);
   EXPECT_NE(text.find("warning: careful\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("hidden"), std::string::npos);
   EXPECT_EQ(text.find("after"), std::string::npos);

@@ -28,6 +28,7 @@ std::vector<CellShare> normalised(const std::map<Index, Real>& weights) {
   Real total = 0;
   for (const auto& [cell, weight] : weights) total += weight;
   std::vector<CellShare> shares;
+  shares.reserve(weights.size());
   for (const auto& [cell, weight] : weights) shares.push_back({cell, weight / total});
   return shares;
 }
@@ -145,6 +146,7 @@ LineGeometry make_line_geometry(const LineSpec& spec) {
 std::vector<double> line_positions(const LineSpec& spec, const LineGeometry& line) {
   const int axis = axis_of(line.direction);
   std::vector<double> positions;
+  positions.reserve(static_cast<std::size_t>(line.points));
   for (Index b = 0; b < line.points; ++b) {
     const Real along = line.center_along(b);
     positions.push_back(axis < 0 ? along : spec.from[axis] + line.direction[axis] * along);
@@ -155,6 +157,7 @@ std::vector<double> line_positions(const LineSpec& spec, const LineGeometry& lin
 std::vector<std::vector<CellShare>> bin_cells(const LineSpec& spec, const LineGeometry& line,
                                               const CartesianGrid& grid) {
   std::vector<std::vector<CellShare>> cells;
+  cells.reserve(static_cast<std::size_t>(line.points));
   for (Index b = 0; b < line.points; ++b) {
     cells.push_back(axis_of(line.direction) >= 0 ? box_cells(bin_box(line, b, grid), grid)
                                                  : sampled_cells(spec, line, b, grid));
