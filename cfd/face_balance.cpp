@@ -194,7 +194,8 @@ void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) 
   set_boundary_velocities(geometry_, boundaries_, fields);
 }
 
-// Walls and inlets: the inertial force of the cell's other face, so that the pressure goes on linearly.
+// No-slip walls and inlets: the inertial force of the cell's other face, so that the pressure goes on linearly. Walls
+// without shear: none, since they mirror the flow and the normal velocity is odd across them.
 void FaceBalance::set_boundary_inertia(const GasFields& fields) {
   const Stencil& s = geometry_.stencil;
   for (const BoundaryPiece& piece : boundaries_.pieces) {
@@ -204,17 +205,21 @@ void FaceBalance::set_boundary_inertia(const GasFields& fields) {
   }
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    if (piece.kind != PieceKind::outlet) continue;
+    if (piece.kind != PieceKind::outlet && piece.kind != PieceKind::slip) continue;
     const auto a = static_cast<std::size_t>(piece.axis);
+    const Real share = piece.area / geometry_.area[a](piece.face);
+    const Index other = piece.face - static_cast<Index>(piece.outward) * s.face_step(piece.axis);
+    const Real base = s.n[piece.axis] > 1 ? inertial_[a](other) : 0;
+    if (piece.kind == PieceKind::slip) {
+      inertial_[a](piece.face) -= share * base;
+      continue;
+    }
     const Index c = piece.cell;
     const Real eps = fields.void_fraction(c);
-    const Real share = piece.area / geometry_.area[a](piece.face);
     const Real gradient = (outlet_pressure(fields, b) - fields.pressure(c)) / piece.half_width;
     const Real outward = eps * (piece.outward * options_.body_force[piece.axis] - gradient) +
                          piece.outward * fields.force(c + piece.axis * fields.cells) -
                          fields.exchange_coefficient(c) / eps * fields.piece_flow[b] / piece.area;
-    const Index other = piece.face - static_cast<Index>(piece.outward) * s.face_step(piece.axis);
-    const Real base = s.n[piece.axis] > 1 ? inertial_[a](other) : 0;
     inertial_[a](piece.face) += share * (piece.outward * outward - base);
   }
 }

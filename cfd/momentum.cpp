@@ -151,6 +151,7 @@ struct PieceTerms {
   Real inflow = 0;  ///< mass that enters [kg/s]
   Vec3 brought;     ///< with this velocity
   Real shear = 0;   ///< coefficient of the tangential slip [kg/s]
+  Real mirror = 0;  ///< viscous conductance to the mirrored cell beyond a wall without shear [kg/s]
 };
 
 PieceTerms piece_terms(const BoundaryPiece& piece, Real flow, Real eps, const GasOptions& options) {
@@ -162,6 +163,9 @@ PieceTerms piece_terms(const BoundaryPiece& piece, Real flow, Real eps, const Ga
   }
   if (piece.kind == PieceKind::inlet || piece.kind == PieceKind::no_slip) {
     terms.shear = options.viscosity * eps * piece.area / piece.half_width;
+  }
+  if (piece.kind == PieceKind::slip) {
+    terms.mirror = options.viscosity * eps * piece.area / (2 * piece.half_width);
   }
   return terms;
 }
@@ -181,6 +185,11 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
       own_(c) += terms.inflow + shear;
       source_(c) += terms.inflow * terms.brought[a] + shear * wall_speed;
     }
+    // The mirrored cell, of opposite normal velocity, is a neighbour like any other; it exerts no shear. Beyond a
+    // boundary a cell's neighbour is the cell itself.
+    const auto beyond = static_cast<std::size_t>(2 * piece.axis + (piece.outward > 0 ? 1 : 0));
+    own_(piece.cell + piece.axis * n) += terms.mirror;
+    normal_[beyond](piece.cell) -= terms.mirror;
   }
 }
 
@@ -202,8 +211,9 @@ Vec3 MomentumEquation::shear_force(const GasFields& fields, std::size_t b) const
       piece_terms(piece, fields.piece_flow[b], fields.void_fraction(piece.cell), options_);
   Vec3 result;
   for (int a = 0; a < 3; ++a) {
-    if (a == piece.axis) continue;
-    result[a] = terms.shear * (piece.velocity[a] - fields.velocity(piece.cell + a * fields.cells));
+    const Real slip =
+        (a == piece.axis ? 0 : piece.velocity[a]) - fields.velocity(piece.cell + a * fields.cells);
+    result[a] = (a == piece.axis ? 2 * terms.mirror : terms.shear) * slip;
   }
   return result;
 }
