@@ -83,6 +83,28 @@ struct ComputeLoads {
   }
 };
 
+/// Particles whose impulses are summed in one go; fixed, so that the sum does not depend on threads.
+constexpr Index fixed_block = 512;
+
+/// What the fixed particles of a block have received.
+struct SumOnFixed {
+  dem::Particles particles;
+  DeviceArray<SampledGas> sampled;
+  DeviceArray<Received> received;
+  DeviceArray<Vec3> impulse;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index block) const {
+    const Index end = Kokkos::min((block + 1) * fixed_block, particles.count);
+    Vec3 sum;
+    for (Index p = block * fixed_block; p < end; ++p) {
+      if (particles.velocity_spin(p).inverse_mass != 0) continue;
+      const Received r = received(p);
+      sum += r.drag_impulse + r.time * sampled(p).pressure_force;
+    }
+    impulse(block) = sum;
+  }
+};
+
 struct ComputeVoidFraction {
   GridLocator grid;
   DeviceArray<CellLoad> load;
@@ -160,6 +182,9 @@ void MomentumExchange::allocate_particles(Index count) {
   sampled_ = make_device<SampledGas>("coupling::momentum_exchange::sampled", count);
   received_ = make_device<Received>("coupling::momentum_exchange::received", count);
   particle_load_ = make_device<CellLoad>("coupling::momentum_exchange::particle_load", count);
+  const Index blocks = (count + fixed_block - 1) / fixed_block;
+  fixed_impulse_ = make_device<Vec3>("coupling::momentum_exchange::fixed_impulse", blocks);
+  fixed_impulse_host_ = make_host<Vec3>("coupling::momentum_exchange::fixed_impulse_host", blocks);
 }
 
 void MomentumExchange::update_footprints(const dem::Particles& particles) {
@@ -227,8 +252,17 @@ void MomentumExchange::deposit_loads(const dem::Particles& particles, Real gas_s
   }
 }
 
+void MomentumExchange::add_fixed_impulse(const dem::Particles& particles) {
+  const Index blocks = (particles.count + fixed_block - 1) / fixed_block;
+  Kokkos::parallel_for("coupling::momentum_exchange::sum_on_fixed", DeviceRange(0, blocks),
+                       SumOnFixed{particles, sampled_, received_, fixed_impulse_});
+  Kokkos::deep_copy(fixed_impulse_host_, fixed_impulse_);
+  for (Index b = 0; b < blocks; ++b) totals_.fixed_received += fixed_impulse_host_(b);
+}
+
 const cfd::ParticleExchange& MomentumExchange::deposit(const dem::Particles& particles, Real gas_step) {
   deposit_loads(particles, gas_step);
+  add_fixed_impulse(particles);
   const bool two_way = options_.exchange != Exchange::one_way;
   const Real release_rate = two_way ? options_.pending_release / gas_step : 0;
   for (Index c = 0; c < transfer_.cell_count(); ++c) {
@@ -277,6 +311,7 @@ void MomentumExchange::save(core::CheckpointWriter& file) const {
   file.write("coupling/void_fraction", void_fraction_host_);
   file.write("coupling/pending", pending_);
   file.write("coupling/particles_received", totals_.particles_received);
+  file.write("coupling/fixed_received", totals_.fixed_received);
   file.write("coupling/gas_received", totals_.gas_received);
   file.write("coupling/pending_total", totals_.pending);
   file.write("coupling/gross", totals_.gross);
@@ -286,6 +321,7 @@ void MomentumExchange::load(core::CheckpointReader& file) {
   file.read_into("coupling/void_fraction", void_fraction_host_);
   file.read_into("coupling/pending", pending_);
   totals_.particles_received = file.read_vec3("coupling/particles_received");
+  totals_.fixed_received = file.read_vec3("coupling/fixed_received");
   totals_.gas_received = file.read_vec3("coupling/gas_received");
   totals_.pending = file.read_vec3("coupling/pending_total");
   totals_.gross = file.read_double("coupling/gross");

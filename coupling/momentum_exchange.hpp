@@ -24,6 +24,7 @@ namespace pellicle::coupling {
 /// Running totals of the exchange since the start of the run, without buoyancy (which no gas cell gave).
 struct ExchangeTotals {
   Vec3 particles_received;  ///< impulse of drag and pressure gradient on the particles [N s]
+  Vec3 fixed_received;      ///< of this, on fixed particles, which pass it on to what holds them [N s]
   Vec3 gas_received;  ///< impulse that the exchange gave to the gas: drag, release and (1 - eps) grad p [N s]
   Vec3 pending;       ///< what the gas is still to be given: particles_received + gas_received + pending = 0
   Real gross = 0;     ///< sum over steps and transfer cells of |impulse on the particles in the cell| [N s]
@@ -83,6 +84,7 @@ class MomentumExchange {
   void allocate_particles(Index count);
   void update_footprints(const dem::Particles& particles);
   void deposit_loads(const dem::Particles& particles, Real gas_step);
+  void add_fixed_impulse(const dem::Particles& particles);
   void map_to_gas();
 
   CouplingOptions options_;
@@ -100,10 +102,12 @@ class MomentumExchange {
   DeviceArray<SampledGas> sampled_;
   DeviceArray<Received> received_;
   DeviceArray<CellLoad> particle_load_, cell_load_;
+  DeviceArray<Vec3> fixed_impulse_;  // of blocks of particles [N s]
 
   // Host.
   GridMapping to_gas_, to_transfer_;
   HostArray<CellLoad> cell_load_host_;
+  HostArray<Vec3> fixed_impulse_host_;
   HostArray<Real> void_fraction_host_;    // transfer grid
   HostArray<Real> solids_, coefficient_;  // transfer grid, per volume
   HostArray<Vec3> force_;                 // transfer grid, explicit force with release [N/m3]

@@ -181,13 +181,19 @@ void Simulation::release_gas() {
   if (particles_) {
     settled_gravity_ = particles_->gravity_impulse();
     settled_volume_time_ = particles_->volume_time();
-    settled_wall_ = wall_impulse_ + support_impulse_;
+    settled_wall_ = impulse_through_walls();
   }
   if (gas_) ledger_.open(Conserved::gas_mass, gas_->balance().mass_initial);
   Vec3 momentum{};
   if (gas_) momentum += gas_->balance().momentum;
   if (particles_) momentum += particles_->compute_totals().momentum;
   ledger_.open(Conserved::momentum, momentum);
+}
+
+/// What walls and fixed particles gave to the moving ones, less what left with some of them, since the start. Contacts
+/// book what a fixed particle receives: what it gives is the opposite.
+Vec3 Simulation::impulse_through_walls() const {
+  return wall_impulse_ - support_impulse_ - particles_->left_momentum();
 }
 
 void Simulation::watch_contacts() {
@@ -222,15 +228,20 @@ void Simulation::update_ledger() {
     stock += exchange_->totals().pending;
     gross += exchange_->totals().gross;
     pending = norm(exchange_->totals().pending);
+    // What the gas gives to fixed particles leaves through whatever holds them.
+    through -= exchange_->totals().fixed_received;
     if (exchange_->options().exchange == coupling::Exchange::one_way) {
       // The gas gives without losing: a source of momentum, by choice of the user.
       sources += exchange_->totals().particles_received;
+    } else if (!exchange_->options().pressure_gradient_force) {
+      // The gas gets (1 - eps) grad p, which no particle gives: likewise.
+      sources += gas_->balance().particle_pressure;
     }
   }
   if (particles_) {
     const dem::ParticleTotals totals = particles_->compute_totals();
     stock += totals.momentum;
-    through += wall_impulse_ + support_impulse_ - settled_wall_ - particles_->left_momentum();
+    through += impulse_through_walls() - settled_wall_;
     const Vec3 gravity = particles_->gravity_impulse() - settled_gravity_;
     sources += gravity;
     gross += norm(gravity);

@@ -58,6 +58,7 @@ class Simulation {
   void move_gas();
   void release_gas();
 
+  Vec3 impulse_through_walls() const;
   void watch_contacts();
   void update_ledger();
   void write_outputs(bool last = false);
@@ -84,7 +85,7 @@ class Simulation {
   cfd::ParticleExchange no_particles_;       // what a gas without particles feels
   dem::ContactReport contacts_;              // of the last outer step
   Vec3 wall_impulse_{}, support_impulse_{};  // since the start [N s]
-  Vec3 settled_gravity_{}, settled_wall_{};  // of these, what acted before t = 0 [N s]
+  Vec3 settled_gravity_{}, settled_wall_{};  // gravity and impulse_through_walls before t = 0 [N s]
   Real settled_volume_time_ = 0;             // [m3 s]
   double wall_begin_ = 0, wall_before_ = 0;  // of this process, and of those before it [s]
 };
