@@ -55,7 +55,7 @@ Real integrate_rebound(Real damping_ratio, bool clip) {
   const Real h = 2e-4;  // contact lasts about 2.9
   Real x = 0;
   Real v = 1;
-  while (x >= 0) {
+  for (int step = 0; x >= 0 && step < 1000000; ++step) {
     const Real k1 = -force(x, v);
     const Real k2 = -force(x + 0.5 * h * v, v + 0.5 * h * k1);
     const Real k3 = -force(x + 0.5 * h * v + 0.25 * h * h * k1, v + 0.5 * h * k2);
