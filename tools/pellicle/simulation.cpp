@@ -67,6 +67,7 @@ void Simulation::resume() {
   }
   core::CheckpointReader file(folder_->checkpoint());
   core::require_same_case(file.read_string("case"), options_.case_yaml_text);
+  folder_->write_case(options_.case_yaml_text);  // time.end and outputs may be new
   core::log().open_file(folder_->run_log());
   time_.load(file);
   if (particles_) particles_->load(file);
@@ -110,6 +111,7 @@ int Simulation::run() {
       progress.update(time_.time(), [this] { return describe_progress(); });
     }
     progress.finish();
+    report_numerics();
     write_checkpoint();
   } catch (const RunError& failure) {
     progress.finish();
@@ -119,6 +121,15 @@ int Simulation::run() {
   }
   write_summary(stop_requested == 0 ? "done" : "stopped");
   return stop_requested == 0 ? 0 : static_cast<int>(ExitCode::interrupted);
+}
+
+/// What the engines had to put up with since this process began, for the log.
+void Simulation::report_numerics() const {
+  if (gas_) core::log().info("largest Courant number of the gas: {:.3g}", largest_courant_);
+  if (crowded_steps_ > 0) {
+    core::log().warn("in {} gas steps a transfer cell stayed below coupling.minimum_void_fraction",
+                     crowded_steps_);
+  }
 }
 
 void Simulation::advance_outer_step() {
@@ -157,13 +168,16 @@ void Simulation::deposit_particles() {
   if (!coupled()) return;
   const core::Timers::Scope scope(timers_, Part::coupling);
   exchange_->deposit(particles_->particles(), time_.gas_step());
+  if (exchange_->bound_report().cells_left_over > 0) ++crowded_steps_;
 }
 
 void Simulation::move_gas() {
   if (!gas_) return;
   {
     const core::Timers::Scope scope(timers_, Part::gas);
-    gas_->update(time_.gas_step(), exchange_ ? exchange_->exchange() : no_particles_);
+    const cfd::StepReport report =
+        gas_->update(time_.gas_step(), exchange_ ? exchange_->exchange() : no_particles_);
+    largest_courant_ = std::max(largest_courant_, report.courant_number);
   }
   if (!coupled()) return;
   const core::Timers::Scope scope(timers_, Part::coupling);

@@ -64,6 +64,7 @@ class Simulation {
   void write_outputs(bool last = false);
   Real contacts_per_particle() const;
   void write_checkpoint();
+  void report_numerics() const;
   void write_summary(const std::string& status, const std::string& message = {});
   std::string describe_progress() const;
   bool coupled() const { return exchange_.has_value() && !time_.settling(); }
@@ -81,6 +82,8 @@ class Simulation {
   core::Timers timers_;
   core::Ledger ledger_;
   core::Schedule checkpoints_;
+  Real largest_courant_ = 0;
+  std::int64_t crowded_steps_ = 0;  // in which the bound of the void fraction could not be kept
   Summary summary_;
   cfd::ParticleExchange no_particles_;       // what a gas without particles feels
   dem::ContactReport contacts_;              // of the last outer step

@@ -30,7 +30,8 @@ struct Summary {
   double largest_impact_speed = 0;   ///< [m/s]
   std::int64_t peak_memory_bytes = 0;
   std::array<double, core::conserved_count> defects{};
-  double instantaneous_momentum_defect = 0;  ///< momentum given to the particles and not yet to the gas, over gross
+  double instantaneous_momentum_defect =
+      0;  ///< momentum given to the particles and not yet to the gas, over gross
   std::int64_t lost_particles = 0;
   std::int64_t particles_left_through_open_sides = 0;
   std::int64_t gas_steps = 0;
