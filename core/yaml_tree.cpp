@@ -13,6 +13,7 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "core/error.hpp"
 
@@ -27,7 +28,7 @@ constexpr std::size_t most_nodes_by_alias = 100'000;
 std::size_t count_nodes(const YamlNode& node) {
   std::size_t count = 1;
   for (const auto& item : node.items) count += count_nodes(item);
-  for (const auto& member : node.members) count += count_nodes(member.second);
+  for (const auto& member : node.members) count += count_nodes(member.value);
   return count;
 }
 
@@ -97,7 +98,7 @@ class TreeBuilder : public YAML::EventHandler {
       if (level.node.kind == YamlNode::Kind::sequence) {
         step = std::to_string(level.node.items.size());
       } else if (level.key_pending) {
-        step = level.node.members.back().first;
+        step = level.node.members.back().name;
       }
       if (!step.empty()) path += (path.empty() ? "" : ".") + step;
     }
@@ -122,7 +123,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
     YamlNode value;
     value.place = place(mark);
-    level.node.members.emplace_back(key, std::move(value));
+    level.node.members.push_back({key, std::move(value)});
     level.key_pending = true;
   }
 
@@ -151,7 +152,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (level.node.kind == YamlNode::Kind::sequence) {
       level.node.items.push_back(std::move(node));
     } else {
-      YamlNode& slot = level.node.members.back().second;
+      YamlNode& slot = level.node.members.back().value;
       node.place = slot.place;
       slot = std::move(node);
       level.key_pending = false;
@@ -168,7 +169,7 @@ class TreeBuilder : public YAML::EventHandler {
 void set_place(YamlNode& node, const std::string& place) {
   node.place = place;
   for (auto& item : node.items) set_place(item, place);
-  for (auto& member : node.members) set_place(member.second, place);
+  for (auto& member : node.members) set_place(member.value, place);
 }
 
 /// The entry of a list that a step of an override's path names, by index or by its `name`; nullptr if there is none.
@@ -187,7 +188,7 @@ YamlNode* find_item(YamlNode& list, const std::string& step) {
 
 void remove_child(YamlNode& parent, const YamlNode* child) {
   std::erase_if(parent.items, [&](const YamlNode& item) { return &item == child; });
-  std::erase_if(parent.members, [&](const auto& member) { return &member.second == child; });
+  std::erase_if(parent.members, [&](const auto& member) { return &member.value == child; });
 }
 
 std::string name_items(const YamlNode& list) {
@@ -204,8 +205,8 @@ std::string name_items(const YamlNode& list) {
 
 const YamlNode* YamlNode::find(std::string_view key) const {
   const auto found =
-      std::find_if(members.begin(), members.end(), [&](const auto& m) { return m.first == key; });
-  return found == members.end() ? nullptr : &found->second;
+      std::find_if(members.begin(), members.end(), [&](const auto& m) { return m.name == key; });
+  return found == members.end() ? nullptr : &found->value;
 }
 
 YamlNode* YamlNode::find(std::string_view key) {
@@ -277,8 +278,8 @@ void apply_override(YamlNode& root, const std::string& assignment) {
       parent->kind = YamlNode::Kind::map;
       child = parent->find(step);
       if (child == nullptr) {
-        parent->members.emplace_back(step, YamlNode{});
-        child = &parent->members.back().second;
+        parent->members.push_back({step, YamlNode{}});
+        child = &parent->members.back().value;
         child->place = override_place;
       }
     }

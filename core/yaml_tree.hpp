@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace pellicle::core {
@@ -12,16 +11,22 @@ namespace pellicle::core {
 /// A value of a YAML document. Maps keep the order of the file; keys are scalars and occur once.
 struct YamlNode {
   enum class Kind { null, scalar, sequence, map };
+  struct Member;
 
   Kind kind = Kind::null;
   std::string place;            ///< `file:line` of its key or, in a list, of itself; `--set` if overridden
   std::string text;             ///< of a scalar
   std::vector<YamlNode> items;  ///< of a sequence
-  std::vector<std::pair<std::string, YamlNode>> members;  ///< of a map
+  std::vector<Member> members;  ///< of a map
 
   /// The value of a key of this map, or nullptr.
   const YamlNode* find(std::string_view key) const;
   YamlNode* find(std::string_view key);
+};
+
+struct YamlNode::Member {
+  std::string name;
+  YamlNode value;
 };
 
 /// Reads the YAML document in `text`; places are `name:line`. Aliases are replaced by what they stand for.

@@ -32,7 +32,7 @@ TEST(YamlTree, KeepsPlacesAndOrder) {
   const YamlNode root = parse_yaml("b: 1\na:\n  - x\n  - {k: v,\n     l: [1, 2]}\nn:\n", "c.yaml");
   ASSERT_EQ(root.kind, Kind::map);
   ASSERT_EQ(root.members.size(), 3u);
-  EXPECT_EQ(root.members[0].first, "b");
+  EXPECT_EQ(root.members[0].name, "b");
   EXPECT_EQ(root.find("b")->text, "1");
   EXPECT_EQ(root.find("b")->place, "c.yaml:1");
   const YamlNode& list = *root.find("a");

@@ -39,8 +39,8 @@ std::string at(const std::string& text) {
   const auto end = bed.begin() + static_cast<std::ptrdiff_t>(std::min(found, bed.size()));
   return "c.yaml:" + std::to_string(1 + std::count(bed.begin(), end, '\n'));
 }
-std::string bed_errors(const std::string& override_) { return errors(spouted_bed_case, {override_}); }
-std::string pair_errors(const std::string& override_) { return errors(two_particles_case, {override_}); }
+std::string bed_errors(const std::string& assignment) { return errors(spouted_bed_case, {assignment}); }
+std::string pair_errors(const std::string& assignment) { return errors(two_particles_case, {assignment}); }
 
 TEST(CaseFile, ReadsTheBed) {
   const CaseSpec spec = parse_case(spouted_bed_case, "c.yaml");

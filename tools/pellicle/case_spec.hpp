@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -35,7 +36,7 @@ struct TimeSpec {
   bool allow_large_step = false;  ///< particle_step over the bound is a warning, not an error
 
   /// Substeps an outer step: gas_step / particle_step.
-  Index substeps() const { return static_cast<Index>(gas_step / particle_step + 0.5); }
+  Index substeps() const { return static_cast<Index>(std::lround(gas_step / particle_step)); }
 };
 
 /// Both name and order of `CaseSpec::materials` are kept from the file; materials that only walls name come last.
