@@ -349,6 +349,8 @@ TEST(CaseErrors, WallsAndSides) {
 }
 
 TEST(CaseErrors, Grids) {
+  EXPECT_EQ(errors(spouted_bed_case, {"gas.grid.cells=[2000, 2000, 2000]"}),
+            at("grid:") + ": gas.grid: 8000000000 cells; at most 2147483647");
   EXPECT_EQ(bed_errors("gas.grid.cells=[0, 2, 2]"),
             "--set: gas.grid.cells.0: \"0\" is out of range; a whole number from 1 to 100000");
   EXPECT_EQ(errors(channel_case, {"gas.grid.faces.y=[0, 0.5, 0.4, 1]"}),

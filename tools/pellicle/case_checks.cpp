@@ -31,6 +31,7 @@ class Checker {
       return;
     }
     check_names();
+    if (!check_cell_counts()) return;  // what follows would make the grids
     check_steps();
     if (!spec_.particles.empty()) check_particles();
     check_sides();
@@ -85,6 +86,20 @@ class Checker {
     check_unique(spec_.output.lines);
     check_unique(spec_.output.probes);
     check_unique(spec_.output.histograms);
+  }
+
+  /// Cells are counted by an Index; says whether they can be.
+  bool check_cell_counts() {
+    bool good = true;
+    const auto check = [&](const std::string& path, const GridSpec& grid) {
+      const std::int64_t cells = std::int64_t{grid.cells.x} * grid.cells.y * grid.cells.z;
+      if (cells <= std::numeric_limits<Index>::max()) return;
+      wrong_key(path, fmt::format("{} cells; at most {}", cells, std::numeric_limits<Index>::max()));
+      good = false;
+    };
+    if (spec_.gas) check("gas.grid", spec_.gas->grid);
+    if (spec_.gas && !spec_.particles.empty()) check("coupling.transfer_grid", spec_.coupling.transfer_grid);
+    return good;
   }
 
   void check_steps() {
