@@ -205,6 +205,8 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   canonicalise();
 }
 
+void Engine::advance(int count, core::Timers& timers) { advance(count, NoFluid{}, timers); }
+
 void Engine::begin_substep(core::Timers& timers) {
   if (!list_valid_) {
     const core::Timers::Scope scope(timers, core::Part::neighbours);

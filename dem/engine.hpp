@@ -90,6 +90,9 @@ class Engine {
     }
   }
 
+  /// The same without a fluid.
+  void advance(int count, core::Timers& timers);
+
   /// Contact figures since the last call; stops the run if an overlap went beyond the limit or a particle broke.
   ContactReport collect_report();
 

@@ -95,7 +95,7 @@ inline std::vector<Vec3> scatter(const Box& box, const std::vector<Real>& radii,
 
 inline void advance(dem::Engine& engine, int substeps) {
   core::Timers timers;
-  engine.advance(substeps, dem::NoFluid{}, timers);
+  engine.advance(substeps, timers);
 }
 
 }  // namespace pellicle::tests

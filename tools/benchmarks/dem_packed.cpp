@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
   const auto run = [&](int n) {
     for (int done = 0; done < n; done += 10) {
       engine.prepare_outer_step();
-      engine.advance(std::min(10, n - done), dem::NoFluid{}, timers);
+      engine.advance(std::min(10, n - done), timers);
     }
   };
   run(settle ? 30000 : 20);

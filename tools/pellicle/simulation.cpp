@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <csignal>
 #include <utility>
-#include <variant>
 
 #include "core/checkpoint.hpp"
 #include "core/error.hpp"
 #include "core/log.hpp"
 #include "core/progress.hpp"
 #include "core/version.hpp"
+#include "coupling/substeps.hpp"
 #include "tools/pellicle/build_case.hpp"
 
 namespace pellicle::tools {
@@ -157,11 +157,11 @@ void Simulation::move_particles() {
   if (!particles_) return;
   summary_.particle_steps += static_cast<double>(particles_->particles().count) * time_.substeps();
   if (!coupled()) {
-    particles_->advance(time_.substeps(), dem::NoFluid{}, timers_);
+    particles_->advance(time_.substeps(), timers_);
     return;
   }
-  std::visit([this](const auto& force) { particles_->advance(time_.substeps(), force, timers_); },
-             exchange_->fluid_force(particles_->particles()));
+  coupling::advance_particles(*particles_, time_.substeps(), exchange_->fluid_force(particles_->particles()),
+                              timers_);
 }
 
 void Simulation::deposit_particles() {

@@ -107,13 +107,13 @@ def split_top_level(text, separator):
 
 def short_name(demangled):
     """('dem::f<Law>', number of the lambda) of one of this project's kernels, None for Kokkos's own."""
-    match = re.search(r"Kokkos::Impl::Parallel(?:For|Reduce|Scan)<", demangled)
+    match = re.search(r"Kokkos::Impl::Parallel(?:For|Reduce|Scan|ScanWithTotal)<", demangled)
     if not match:
         return None
     functor = demangled[match.end():]
     functor = re.sub(r"_INTERNAL_\w+?::", "", functor).replace("(anonymous namespace)::", "")
     functor = functor[:split_top_level(functor, ",")]
-    functor = re.sub(r"^Kokkos::Impl::CombinedFunctorReducer<", "", functor)
+    functor = re.sub(r"^(Kokkos::Impl::Combined(?:FunctorReducer|ReductionFunctorWrapper)<)+", "", functor)
     if functor.startswith("Kokkos::"):
         return None
     number = 1
