@@ -90,7 +90,4 @@ void move_particles(const Particles& particles, const ContactResult& contacts, c
                        MotionKernel<FluidForce>{particles, contacts, list, domain, step, fluid_force, flags});
 }
 
-extern template void move_particles(const Particles&, const ContactResult&, const NeighbourList&,
-                                    const Domain&, const MotionStep&, const NoFluid&, const MotionFlagsView&);
-
 }  // namespace pellicle::dem
