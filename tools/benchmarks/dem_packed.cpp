@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -54,9 +55,7 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_benchmark(int argc, char** argv) {
   CLI::App app{"Particle-steps per second of the DEM engine on a packed bed"};
   std::string positions_file;
   int count = 50000;
@@ -132,4 +131,15 @@ int main(int argc, char** argv) {
               100 * timers.seconds(core::Part::neighbours) / total,
               100 * timers.seconds(core::Part::motion) / total);
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run_benchmark(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "dem_packed: %s\n", error.what());
+    return 1;
+  }
 }
