@@ -1,0 +1,70 @@
+// What a checkpoint keeps of the engine.
+#include "dem/engine.hpp"
+#include "dem/engine_arrays.hpp"
+
+namespace pellicle::dem {
+namespace {
+
+template <class T>
+void read_array(const core::CheckpointReader& file, const char* name, const DeviceArray<T>& array) {
+  const auto host = Kokkos::create_mirror_view(array);
+  file.read_into(name, host);
+  Kokkos::deep_copy(array, host);
+}
+
+}  // namespace
+
+void Engine::save(core::CheckpointWriter& file) const {
+  const Index n = particles_.count;
+  file.write("dem/count", std::int64_t{n});
+  file.write("dem/substeps", substeps_);
+  file.write("dem/list_builds", builds_);
+  file.write("dem/left", left_);
+  file.write("dem/left_momentum", left_momentum_);
+  file.write("dem/gravity_impulse", gravity_impulse_);
+  file.write("dem/volume_time", volume_time_);
+  file.write("dem/started", std::int64_t{started_ ? 1 : 0});
+  if (n == 0) return;
+  file.write("dem/smallest_radius", smallest_radius_);
+  file.write("dem/largest_radius", largest_radius_);
+  file.write("dem/start_count", start_count_);
+  file.write("dem/moving_mass", moving_mass_);
+  file.write("dem/moving_volume", moving_volume_);
+  file.write("dem/one_particle_material", std::int64_t{one_particle_material_ ? 1 : 0});
+  file.write("dem/position_radius", host_copy(particles_.position_radius, n));
+  file.write("dem/velocity_spin", host_copy(particles_.velocity_spin, n));
+  file.write("dem/mass", host_copy(particles_.mass, n));
+  file.write("dem/acceleration", host_copy(particles_.acceleration, n));
+  file.write("dem/angular_acceleration", host_copy(particles_.angular_acceleration, n));
+  file.write("dem/touching", host_copy(result_.touching, n));
+}
+
+void Engine::load(core::CheckpointReader& file) {
+  const auto n = file.read_int64("dem/count");
+  allocate(static_cast<std::size_t>(n));
+  substeps_ = file.read_int64("dem/substeps");
+  builds_ = file.read_int64("dem/list_builds");
+  left_ = file.read_int64("dem/left");
+  left_momentum_ = file.read_vec3("dem/left_momentum");
+  gravity_impulse_ = file.read_vec3("dem/gravity_impulse");
+  volume_time_ = file.read_double("dem/volume_time");
+  started_ = file.read_int64("dem/started") != 0;
+  search_.clear();
+  if (n == 0) return;
+  read_array(file, "dem/position_radius", particles_.position_radius);
+  read_array(file, "dem/velocity_spin", particles_.velocity_spin);
+  read_array(file, "dem/mass", particles_.mass);
+  read_array(file, "dem/acceleration", particles_.acceleration);
+  read_array(file, "dem/angular_acceleration", particles_.angular_acceleration);
+  read_array(file, "dem/touching", result_.touching);
+  smallest_radius_ = file.read_double("dem/smallest_radius");
+  largest_radius_ = file.read_double("dem/largest_radius");
+  start_count_ = file.read_int64("dem/start_count");
+  moving_mass_ = file.read_double("dem/moving_mass");
+  moving_volume_ = file.read_double("dem/moving_volume");
+  one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
+  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
+  canonicalise();
+}
+
+}  // namespace pellicle::dem
