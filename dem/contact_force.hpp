@@ -12,6 +12,12 @@ struct ContactForce {
   Vec3 rolling_torque;  ///< on the first body [N m]; the second gets the opposite
 };
 
+/// n/I of a solid sphere with n contacts in the last substep, I = 0.4 m R² [1/(kg m²)]; 0 for a fixed particle. A contact
+/// that has just begun is not among the n yet, but is one.
+KOKKOS_INLINE_FUNCTION Real spin_compliance_of(std::int32_t touching, Real inverse_mass, Real radius) {
+  return (touching > 1 ? touching : 1) * 2.5 * inverse_mass / (radius * radius);
+}
+
 /// The laws of a run, one of each family.
 template <class Normal, class Tangential, class Rolling>
 struct ContactLaws {

@@ -9,49 +9,10 @@ struct Accumulator {
   Vec3 force{}, torque{};
 };
 
-/// n/I of a solid sphere with n contacts in the last substep, I = 0.4 m R²; 0 for a fixed particle. A contact that has
-/// just begun is not among the n yet, but is one.
-KOKKOS_INLINE_FUNCTION Real spin_compliance_of(std::int32_t touching, Real inverse_mass, Real radius) {
-  return (touching > 1 ? touching : 1) * 2.5 * inverse_mass / (radius * radius);
-}
-
 /// Extremes and impulses go on, counts start anew.
 KOKKOS_INLINE_FUNCTION BlockReport start_report(BlockReport report) {
   report.touching = 0;
-  report.touching_walls = 0;
   return report;
-}
-
-/// Contacts of particle p with the walls of its row, added to its sums. A fixed particle has none: it may stand in a
-/// wall as far as it likes.
-template <class Laws>
-KOKKOS_INLINE_FUNCTION void add_wall_contacts(const ContactInput& in, const Laws& laws,
-                                              const DeviceArray<std::int32_t>& touching, Index p,
-                                              Accumulator& sum, BlockReport& report, std::int32_t& contacts) {
-  const VelocitySpin motion = in.particles.velocity_spin(p);
-  if (motion.inverse_mass == 0) return;
-  const std::int32_t end = in.list.wall_offset(p + 1);
-  for (std::int32_t slot = in.list.wall_offset(p); slot < end; ++slot) {
-    const DevicePlane wall = in.walls(in.list.wall(slot));
-    const PositionRadius self = in.particles.position_radius(p);
-    const Real distance = wall.distance(self.position());
-    if (distance >= self.radius) continue;
-    const PairParameters& pair = in.table(motion.material * in.materials + wall.material);
-    const Vec3 n = -wall.normal;
-    const Vec3 dv = motion.velocity() - wall.velocity;
-    const ContactState c{self.radius - distance, self.radius, 1 / motion.inverse_mass, dot(dv, n)};
-    const Real compliance = spin_compliance_of(touching(p), motion.inverse_mass, self.radius);
-    const ContactForce f =
-        laws(c, pair, n, dv, distance * motion.spin(), distance, motion.spin(), compliance);
-    sum.force += f.force;
-    sum.torque += f.torque + f.rolling_torque;
-    report.wall_impulse += in.kick * f.force;
-    ++contacts;
-    ++report.touching_walls;
-    report.largest_overlap = Kokkos::max(report.largest_overlap, c.overlap / self.radius);
-    report.largest_depth = Kokkos::max(report.largest_depth, c.overlap);
-    report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
-  }
 }
 
 /// One pair contact seen from particle i. `d` from i to its partner, with |d|² = s2 < (r_i + r_j)².
@@ -122,7 +83,6 @@ struct ParticleContactKernel {
       report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
     }
     if (ma.inverse_mass == 0) report.support_impulse += in.kick * sum.force;
-    add_wall_contacts(in, laws, out.touching, p, sum, report, contacts);
     out.force(p) = sum.force;
     out.torque(p) = sum.torque;
     out.touching_new(p) = contacts;
@@ -171,15 +131,13 @@ struct BlockContactKernel {
     }
     flush(buffer, sum, report);
     for (Index p = begin; p < end; ++p) {
-      std::int32_t& touched = contacts[p - begin];
-      report.touching += touched;
+      report.touching += contacts[p - begin];
       if (in.particles.velocity_spin(p).inverse_mass == 0) {
         report.support_impulse += in.kick * sum[p - begin].force;
       }
-      add_wall_contacts(in, laws, out.touching, p, sum[p - begin], report, touched);
       out.force(p) = sum[p - begin].force;
       out.torque(p) = sum[p - begin].torque;
-      out.touching_new(p) = touched;
+      out.touching_new(p) = contacts[p - begin];
     }
     out.report(block) = report;
   }

@@ -1,4 +1,4 @@
-// Contact forces on all particles: the loop that most of the time goes into.
+// Contact forces between particles: the loop that most of the time goes into.
 #pragma once
 
 #include <type_traits>
@@ -6,20 +6,17 @@
 #include "dem/contact_laws.hpp"
 #include "dem/neighbour_list.hpp"
 #include "dem/particles.hpp"
-#include "dem/walls.hpp"
 
 namespace pellicle::dem {
 
-/// What one block of particles reports about its contacts: extremes and impulses since the report was last cleared,
+/// What one block of particles reports about contacts with particles: extremes and impulses since the report was last cleared,
 /// counts of the last substep.
 struct BlockReport {
   Real largest_overlap = 0;         ///< largest δ/R of the smaller particle [-]
   Real largest_depth = 0;           ///< largest δ [m]
   Real largest_approach_speed = 0;  ///< [m/s]
-  Vec3 wall_impulse{};              ///< that walls gave to moving particles [N s]
   Vec3 support_impulse{};           ///< that contacts gave to fixed particles [N s]
   std::int64_t touching = 0;        ///< touching partners, each pair counted at both particles
-  std::int64_t touching_walls = 0;
 };
 
 /// Forces and torques by contact, and the reports of the blocks. All arrays are particle- or block-sized.
@@ -36,7 +33,6 @@ struct ContactInput {
   Domain domain;
   Particles particles;
   NeighbourList list;
-  DeviceArray<DevicePlane> walls;
   DeviceArray<PairParameters> table;  ///< materials²
   Index materials = 1;
   Real kick = 0;  ///< time over which these forces will act [s], for the impulses reported
@@ -49,8 +45,9 @@ inline constexpr Index contact_block = std::is_same_v<Device, Host> ? 64 : 1;
 
 inline Index contact_block_count(Index particles) { return (particles + contact_block - 1) / contact_block; }
 
-/// Overwrites force, torque and touching_new with the contacts of this moment and carries the reports on. Deterministic: each particle
-/// sums its row in list order, whoever computes it.
+/// Overwrites force, torque and touching_new with the contacts between particles at this moment and carries the reports
+/// on; walls add theirs afterwards (dem/wall_contacts.hpp). Deterministic: each particle sums its row in list order,
+/// whoever computes it.
 void compute_contact_forces(const ContactInput& input, const ContactOptions& options,
                             const ContactResult& result);
 

@@ -17,6 +17,7 @@ Engine::Engine(const EngineSetup& setup) : setup_(setup), flags_("dem::engine::f
   std::visit([&](auto& law) { law.time_step = setup.time_step; }, options.tangential);
   std::visit([&](auto& law) { law.time_step = setup.time_step; }, options.rolling);
   planes_ = make_device_planes(setup_.walls);
+  wall_report_ = make_array<WallReport>("dem::engine::wall_report", wall_blocks);
   const auto table = make_pair_table(setup_.materials, setup_.pairs, options.clip);
   table_ = make_array<PairParameters>("dem::engine::pair_table", table.size());
   const auto host = Kokkos::create_mirror_view(table_);
@@ -73,7 +74,7 @@ void Engine::advance(int count, core::Timers& timers) { advance(count, NoFluid{}
 void Engine::begin_substep(core::Timers& timers) {
   if (!list_valid_) {
     const core::Timers::Scope scope(timers, core::Part::neighbours);
-    if (!search_.empty()) search_.front().build(particles_, planes_, setup_.time_step, list_);
+    if (!search_.empty()) build_lists();
     Kokkos::fence("dem::engine::list_built");
     list_valid_ = true;
     ++builds_;
@@ -81,12 +82,21 @@ void Engine::begin_substep(core::Timers& timers) {
   // The first kick takes the velocity from the start of the step to its middle only.
   step_.kick = started_ ? setup_.time_step : 0.5 * setup_.time_step;
   const core::Timers::Scope scope(timers, core::Part::contacts);
-  const ContactInput input{setup_.domain, particles_,
-                           list_,         planes_,
-                           table_,        static_cast<Index>(setup_.materials.size()),
-                           step_.kick,    one_particle_material_};
+  const ContactInput input{setup_.domain,
+                           particles_,
+                           list_,
+                           table_,
+                           static_cast<Index>(setup_.materials.size()),
+                           step_.kick,
+                           one_particle_material_};
   compute_contact_forces(input, setup_.contacts, result_);
+  add_wall_contacts(input, wall_list_, planes_, setup_.contacts, result_, wall_report_);
   Kokkos::fence("dem::engine::contacts_done");
+}
+
+void Engine::build_lists() {
+  search_.front().build(particles_, setup_.time_step, list_);
+  build_wall_list(particles_, list_, planes_, wall_list_);
 }
 
 void Engine::end_substep() {
@@ -123,13 +133,21 @@ ContactReport Engine::collect_report() {
     sum.largest_overlap = std::max(sum.largest_overlap, r.largest_overlap);
     sum.largest_depth = std::max(sum.largest_depth, r.largest_depth);
     sum.largest_approach_speed = std::max(sum.largest_approach_speed, r.largest_approach_speed);
-    sum.wall_impulse += r.wall_impulse;
     sum.support_impulse += r.support_impulse;
     if (b < blocks) sum.touching_pairs += r.touching;
-    if (b < blocks) sum.touching_walls += r.touching_walls;
   }
   sum.touching_pairs /= 2;
   Kokkos::deep_copy(result_.report, BlockReport{});
+  const auto walls = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_report_);
+  for (Index b = 0; b < wall_blocks; ++b) {
+    const WallReport& r = walls(b);
+    sum.largest_overlap = std::max(sum.largest_overlap, r.largest_overlap);
+    sum.largest_depth = std::max(sum.largest_depth, r.largest_depth);
+    sum.largest_approach_speed = std::max(sum.largest_approach_speed, r.largest_approach_speed);
+    sum.wall_impulse += r.impulse;
+    sum.touching_walls += r.touching;
+  }
+  Kokkos::deep_copy(wall_report_, WallReport{});
   if (!(sum.largest_overlap <= setup_.contacts.overlap_limit)) stop_for_overlap(sum.largest_overlap);
   return sum;
 }

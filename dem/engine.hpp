@@ -13,6 +13,7 @@
 #include "dem/motion.hpp"
 #include "dem/neighbour_list.hpp"
 #include "dem/particles.hpp"
+#include "dem/wall_contacts.hpp"
 #include "dem/walls.hpp"
 
 namespace pellicle::dem {
@@ -121,6 +122,7 @@ class Engine {
   void allocate(std::size_t n);
   void begin_substep(core::Timers& timers);
   void end_substep();
+  void build_lists();
   void sort_memory();
   void remove_left();
   void take_stock();
@@ -130,6 +132,8 @@ class Engine {
   Particles particles_;
   Particles scratch_;
   DeviceArray<DevicePlane> planes_;
+  WallList wall_list_;
+  DeviceArray<WallReport> wall_report_;
   DeviceArray<PairParameters> table_;
   std::vector<NeighbourSearch> search_;  // none before there are particles
   NeighbourList list_;

@@ -13,6 +13,15 @@ DeviceArray<T> make_array(const char* label, std::size_t n) {
   return DeviceArray<T>(Kokkos::view_alloc(std::string(label)), n);
 }
 
+/// Makes an array at least `size` long; contents are not kept when it grows.
+template <class T>
+void ensure_size(DeviceArray<T>& array, std::size_t size, const char* label) {
+  if (array.extent(0) < size) {
+    array = DeviceArray<T>(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
+                           size + size / 4 + 16);
+  }
+}
+
 /// Host copy of the part of an array that is in use.
 template <class T>
 auto host_copy(const DeviceArray<T>& array, Index count) {

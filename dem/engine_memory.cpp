@@ -106,7 +106,7 @@ void Engine::allocate(std::size_t n) {
 void Engine::sort_memory() {
   if (search_.empty()) return;
   // A build yields the canonical order; the lists it also makes name particles by their old place and are dropped.
-  search_.front().build(particles_, planes_, setup_.time_step, list_);
+  search_.front().build(particles_, setup_.time_step, list_);
   scratch_.count = particles_.count;
   permute(particles_, result_.touching, search_.front().order(), scratch_, touching_scratch_);
   std::swap(particles_, scratch_);

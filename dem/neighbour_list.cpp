@@ -4,17 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dem/engine_arrays.hpp"
+
 namespace pellicle::dem {
 namespace {
-
-/// Arrays that only ever grow; contents are not kept.
-template <class T>
-void ensure_size(DeviceArray<T>& array, std::size_t size, const char* label) {
-  if (array.extent(0) < size) {
-    array = DeviceArray<T>(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
-                           size + size / 4 + 16);
-  }
-}
 
 struct CellGrid {
   Domain domain;
@@ -156,8 +149,7 @@ struct CountPairs {
   CellGrid grid;
   DeviceArray<std::int32_t> cell_start, order;
   DeviceArray<PositionRadius> sorted;
-  DeviceArray<DevicePlane> walls;
-  DeviceArray<std::int32_t> pair_count, wall_count;
+  DeviceArray<std::int32_t> pair_count;
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index slot) const {
     const PositionRadius self = sorted(slot);
@@ -170,10 +162,6 @@ struct CountPairs {
     });
     const Index p = order(slot);
     pair_count(p) = pairs < 0 ? 0 : pairs;  // a particle that is nowhere (NaN) is not even near itself
-    std::int32_t near = 0;
-    const auto wall_total = static_cast<Index>(walls.extent(0));
-    for (Index w = 0; w < wall_total; ++w) near += walls(w).distance(self.position()) < self.radius ? 1 : 0;
-    wall_count(p) = near;
   }
 };
 
@@ -182,7 +170,6 @@ struct FillPairs {
   CellGrid grid;
   DeviceArray<std::int32_t> cell_start, order;
   DeviceArray<PositionRadius> sorted;
-  DeviceArray<DevicePlane> walls;
   NeighbourList list;
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index slot) const {
@@ -204,11 +191,6 @@ struct FillPairs {
         for (std::int32_t f = 0; f < n; ++f) list.partner(entry++) = order(found[f]);
       }
     });
-    std::int32_t wall_entry = list.wall_offset(p);
-    const auto wall_total = static_cast<Index>(walls.extent(0));
-    for (Index w = 0; w < wall_total; ++w) {
-      if (walls(w).distance(self.position()) < self.radius) list.wall(wall_entry++) = w;
-    }
   }
 };
 
@@ -254,7 +236,6 @@ void NeighbourSearch::bin(const Particles& particles) {
   ensure_size(order_, n, "dem::neighbour_list::order");
   ensure_size(sorted_, n, "dem::neighbour_list::sorted");
   ensure_size(pair_count_, n, "dem::neighbour_list::pair_count");
-  ensure_size(wall_count_, n, "dem::neighbour_list::wall_count");
   ensure_size(cell_start_, cells + 1, "dem::neighbour_list::cell_start");
   ensure_size(cell_fill_, cells, "dem::neighbour_list::cell_fill");
   const CellGrid grid{domain_, cells_, inverse_cell_size_};
@@ -267,14 +248,12 @@ void NeighbourSearch::bin(const Particles& particles) {
   sort_cells_by_id(particles, static_cast<Index>(cells), cell_start_, order_);
 }
 
-void NeighbourSearch::build(const Particles& particles, const DeviceArray<DevicePlane>& walls, Real time_step,
-                            NeighbourList& list) {
+void NeighbourSearch::build(const Particles& particles, Real time_step, NeighbourList& list) {
   const auto n = static_cast<std::size_t>(particles.count);
   wrap_periodic(domain_, particles);
   bin(particles);
   list.count = particles.count;
   ensure_size(list.offset, n + 1, "dem::neighbour_list::offset");
-  ensure_size(list.wall_offset, n + 1, "dem::neighbour_list::wall_offset");
   ensure_size(list.built_at, n, "dem::neighbour_list::built_at");
   ensure_size(list.allowance_squared, n, "dem::neighbour_list::allowance_squared");
   const CellGrid grid{domain_, cells_, inverse_cell_size_};
@@ -284,24 +263,20 @@ void NeighbourSearch::build(const Particles& particles, const DeviceArray<Device
   const bool repeats = domain_.periodic.x + domain_.periodic.y + domain_.periodic.z != 0;
   const DeviceRange all(0, particles.count);
   if (repeats) {
-    Kokkos::parallel_for(
-        "dem::neighbour_list::count_periodic", all,
-        CountPairs<true>{grid, cell_start_, order_, sorted_, walls, pair_count_, wall_count_});
+    Kokkos::parallel_for("dem::neighbour_list::count_periodic", all,
+                         CountPairs<true>{grid, cell_start_, order_, sorted_, pair_count_});
   } else {
-    Kokkos::parallel_for(
-        "dem::neighbour_list::count", all,
-        CountPairs<false>{grid, cell_start_, order_, sorted_, walls, pair_count_, wall_count_});
+    Kokkos::parallel_for("dem::neighbour_list::count", all,
+                         CountPairs<false>{grid, cell_start_, order_, sorted_, pair_count_});
   }
   offsets_from_counts(pair_count_, list.offset, particles.count, "dem::neighbour_list::pair_offsets");
-  offsets_from_counts(wall_count_, list.wall_offset, particles.count, "dem::neighbour_list::wall_offsets");
   ensure_size(list.partner, read_total(list.offset, particles.count), "dem::neighbour_list::partner");
-  ensure_size(list.wall, read_total(list.wall_offset, particles.count), "dem::neighbour_list::wall");
   if (repeats) {
     Kokkos::parallel_for("dem::neighbour_list::fill_periodic", all,
-                         FillPairs<true>{grid, cell_start_, order_, sorted_, walls, list});
+                         FillPairs<true>{grid, cell_start_, order_, sorted_, list});
   } else {
     Kokkos::parallel_for("dem::neighbour_list::fill", all,
-                         FillPairs<false>{grid, cell_start_, order_, sorted_, walls, list});
+                         FillPairs<false>{grid, cell_start_, order_, sorted_, list});
   }
 }
 

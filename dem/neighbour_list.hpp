@@ -5,7 +5,6 @@
 #include "core/types.hpp"
 #include "core/views.hpp"
 #include "dem/particles.hpp"
-#include "dem/walls.hpp"
 
 namespace pellicle::dem {
 
@@ -40,13 +39,11 @@ struct SkinOptions {
 /// Full lists (each pair twice, once at each particle) in compressed rows. Row p is entries offset(p) … offset(p+1).
 /// A slot keeps its meaning until the next build, so laws with history can keep an array per slot.
 struct NeighbourList {
-  Index count = 0;                        ///< particles
-  DeviceArray<std::int32_t> offset;       ///< count + 1
-  DeviceArray<std::int32_t> partner;      ///< particle index, row by row, ordered by cell, then by id
-  DeviceArray<std::int32_t> wall_offset;  ///< count + 1
-  DeviceArray<std::int32_t> wall;         ///< wall index, row by row
-  DeviceArray<Vec3> built_at;             ///< position at the build [m]
-  DeviceArray<Real> allowance_squared;    ///< how far a particle may move, squared [m²]
+  Index count = 0;                      ///< particles
+  DeviceArray<std::int32_t> offset;     ///< count + 1
+  DeviceArray<std::int32_t> partner;    ///< particle index, row by row, ordered by cell, then by id
+  DeviceArray<Vec3> built_at;           ///< position at the build [m]
+  DeviceArray<Real> allowance_squared;  ///< how far a particle may move, squared [m²]
 };
 
 /// Scratch of the search, kept to spare allocations, and the canonical order of the particles.
@@ -57,10 +54,9 @@ class NeighbourSearch {
   NeighbourSearch(const Domain& domain, const SkinOptions& skin, Real smallest_radius, Real largest_radius,
                   std::int64_t particles);
 
-  /// Finds all pairs and walls within reach; the result depends on positions, speeds and ids alone, not on the memory
+  /// Finds all pairs within reach; the result depends on positions, speeds and ids alone, not on the memory
   /// order or the number of threads. Time step in s.
-  void build(const Particles& particles, const DeviceArray<DevicePlane>& walls, Real time_step,
-             NeighbourList& list);
+  void build(const Particles& particles, Real time_step, NeighbourList& list);
 
   /// Particle indices ordered by cell, then id, as of the last build: the order to sort memory by.
   const DeviceArray<std::int32_t>& order() const { return order_; }
@@ -80,7 +76,6 @@ class NeighbourSearch {
   DeviceArray<std::int32_t> order_;       // sorted slot -> particle
   DeviceArray<PositionRadius> sorted_;    // x, y, z, radius + allowance in sorted order
   DeviceArray<std::int32_t> pair_count_;  // particle -> row length
-  DeviceArray<std::int32_t> wall_count_;
 };
 
 /// Moves every particle that has left a periodic side back in.

@@ -7,6 +7,7 @@
 
 #include "dem/contact_laws.hpp"
 #include "dem/contact_loop.hpp"
+#include "dem/wall_contacts.hpp"
 #include "tests/dem/bed.hpp"
 
 namespace pellicle::dem {
@@ -73,6 +74,7 @@ struct LoopResult {
   std::vector<Vec3> force, torque;
   std::vector<std::int32_t> touching;
   BlockReport report;
+  WallReport wall_report;
 };
 
 LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& seeds,
@@ -103,7 +105,7 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   }
   Kokkos::deep_copy(in.particles.position_radius, place);
   Kokkos::deep_copy(in.particles.velocity_spin, motion);
-  in.walls = make_device_planes(setup.walls);
+  const auto walls = make_device_planes(setup.walls);
   const auto table = make_pair_table(setup.materials, setup.pairs, setup.contacts.clip);
   in.table = DeviceArray<PairParameters>("test::contact_laws::table", table.size());
   const auto table_host = Kokkos::create_mirror_view(in.table);
@@ -112,7 +114,9 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   in.materials = static_cast<Index>(setup.materials.size());
   in.kick = setup.time_step;
   NeighbourSearch search(setup.domain, setup.skin, smallest, largest, in.particles.count);
-  search.build(in.particles, in.walls, setup.time_step, in.list);
+  search.build(in.particles, setup.time_step, in.list);
+  WallList wall_list;
+  build_wall_list(in.particles, in.list, walls, wall_list);
 
   ContactOptions options = setup.contacts;
   options.tangential = ViscousCoulomb{setup.time_step};
@@ -126,6 +130,8 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
                                         static_cast<std::size_t>(contact_block_count(in.particles.count)));
   Kokkos::deep_copy(out.touching, touching);
   compute_contact_forces(in, options, out);
+  const DeviceArray<WallReport> wall_report("test::contact_laws::wall_report", wall_blocks);
+  add_wall_contacts(in, wall_list, walls, options, out, wall_report);
   Kokkos::fence();
   LoopResult result;
   const auto force = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, out.force);
@@ -136,6 +142,10 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   result.torque.assign(torque.data(), torque.data() + n);
   result.touching.assign(count.data(), count.data() + n);
   result.report = report(0);
+  // One particle is in one block, and every other block is empty.
+  const auto of_walls = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_report);
+  for (Index b = 0; b < wall_blocks; ++b)
+    if (of_walls(b).touching > 0) result.wall_report = of_walls(b);
   return result;
 }
 
@@ -241,10 +251,10 @@ TEST(ContactLoop, WallsAgreeWithHandCalculation) {
     const LoopResult result = run_loop(setup, {{{0.01, 0.01, 0.00095}, c.velocity, c.spin, 1e-3, 0, false}});
     expect_close(result.force[0], c.force, "force");
     expect_close(result.torque[0], c.torque, "torque");
-    EXPECT_EQ(result.report.touching_walls, 1);
-    EXPECT_NEAR(result.report.largest_overlap, 0.05, 1e-12);
-    EXPECT_NEAR(result.report.largest_approach_speed, 0.2, 1e-14);
-    expect_close(result.report.wall_impulse, 1e-5 * c.force, "impulse of the wall");
+    EXPECT_EQ(result.wall_report.touching, 1);
+    EXPECT_NEAR(result.wall_report.largest_overlap, 0.05, 1e-12);
+    EXPECT_NEAR(result.wall_report.largest_approach_speed, 0.2, 1e-14);
+    expect_close(result.wall_report.impulse, 1e-5 * c.force, "impulse of the wall");
   }
 }
 

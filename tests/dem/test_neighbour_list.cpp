@@ -8,6 +8,7 @@
 #include <ostream>
 #include <vector>
 
+#include "dem/wall_contacts.hpp"
 #include "tests/dem/bed.hpp"
 
 namespace pellicle::dem {
@@ -64,12 +65,15 @@ Rows build_rows(const Domain& domain, const SkinOptions& skin, const std::vector
       [](const PositionRadius& a, const PositionRadius& b) { return a.radius < b.radius; });
   NeighbourSearch search(domain, skin, small->radius, large->radius, particles.count);
   NeighbourList list;
-  search.build(particles, make_device_planes(walls), time_step, list);
+  search.build(particles, time_step, list);
+  WallList wall_list;
+  build_wall_list(particles, list, make_device_planes(walls), wall_list);
   Kokkos::fence();
   const auto offset = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, list.offset);
   const auto partner = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, list.partner);
-  const auto wall_offset = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, list.wall_offset);
-  const auto wall = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, list.wall);
+  const auto wall_offset = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_list.offset);
+  const auto wall = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_list.wall);
+  const auto wall_particle = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_list.particle);
   const auto canonical = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, search.order());
   Rows rows;
   for (std::size_t p = 0; p < n; ++p) {
@@ -77,9 +81,13 @@ Rows build_rows(const Domain& domain, const SkinOptions& skin, const std::vector
     auto& row = rows.pairs[id];
     for (int s = offset(p); s < offset(p + 1); ++s)
       row.push_back(order[static_cast<std::size_t>(partner(s))]);
-    auto& wall_row = rows.walls[id];
-    for (int s = wall_offset(p); s < wall_offset(p + 1); ++s) wall_row.push_back(wall(s));
+    rows.walls[id];
     rows.order.push_back(order[static_cast<std::size_t>(canonical(p))]);
+  }
+  for (int k = 0; k < wall_list.count; ++k) {
+    auto& row = rows.walls.at(order[static_cast<std::size_t>(wall_particle(k))]);
+    EXPECT_TRUE(row.empty()) << "a particle has two rows";
+    for (int s = wall_offset(k); s < wall_offset(k + 1); ++s) row.push_back(wall(s));
   }
   return rows;
 }
