@@ -85,6 +85,14 @@ class Catalogue : public Keys {
     Catalogue inner(info);
     describe(inner);
   }
+  void visit_real_or_section(const Key& key, const RealRule& rule, std::optional<Real>& value, bool&,
+                             const Describe& describe) override {
+    KeyInfo& info = add(key, KeyType::real, value ? to_yaml(*value) : "");
+    info.real_rule = rule;
+    info.or_section = true;
+    Catalogue inner(info);
+    describe(inner);
+  }
   void visit_list(const Key& key, Size size, const Entries& entries) override {
     KeyInfo& info = add(key, KeyType::section, "[]");
     info.is_list = true;

@@ -19,7 +19,8 @@ struct KeyInfo {
   std::string default_text;  ///< as it would stand in the file, or in words; empty if there is none
   bool default_in_words = false;
   KeyType type = KeyType::section;
-  bool is_list = false;   ///< of what `type` says
+  bool or_section = false;  ///< of a number: a section with `children` may stand in its place
+  bool is_list = false;     ///< of what `type` says
   bool is_named = false;  ///< a section whose keys are names that the user chooses, each a section like this
   Size size;              ///< of a list
   RealRule real_rule;

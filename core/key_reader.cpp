@@ -307,6 +307,16 @@ class Reader : public Keys {
     }
   }
 
+  void visit_real_or_section(const Key& key, const RealRule& rule, std::optional<Real>& value, bool& present,
+                             const Describe& describe) override {
+    const YamlNode* node = find(key.name);
+    if (node == nullptr || node->kind != Kind::map) return visit_real(key, rule, value);
+    take(key, "");
+    present = true;
+    value.reset();
+    read_section(node, path_of(key.name), node->place, describe);
+  }
+
   void visit_list(const Key& key, Size size, const Entries& entries) override {
     const YamlNode* node = take(key, fmt::format("a list of {}", allowed_size(size)));
     const std::string path = path_of(key.name);

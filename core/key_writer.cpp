@@ -85,6 +85,11 @@ class Writer : public Keys {
     lines.push_back(fmt::format("{}:{}", key.name, inner.lines.empty() ? " {}" : ""));
     add_indented(inner.lines);
   }
+  void visit_real_or_section(const Key& key, const RealRule& rule, std::optional<Real>& value, bool& present,
+                             const Describe& describe) override {
+    if (present) return visit_section(key, false, present, describe);
+    visit_real(key, rule, value);
+  }
   void visit_list(const Key& key, Size size, const Entries& entries) override {
     if (entries.count() < size.min) return;  // not given
     lines.push_back(fmt::format("{}:{}", key.name, entries.count() == 0 ? " []" : ""));

@@ -223,6 +223,15 @@ class Keys {
     visit_section(key, false, present, [&](Keys& keys) { describe(keys, held); });
     if (present) value = std::move(held);
   }
+  /// A number, or a section that says more: `diameter: 3 mm` or `diameter: {uniform: ...}`. A file has one of the two.
+  template <class Section>
+  void real_or_section(const Key& key, const RealRule& rule, std::optional<Real>& value,
+                       std::optional<Section>& section, const DescribeEntry<Section>& describe) {
+    bool present = section.has_value();
+    Section held = present ? *section : Section{};
+    visit_real_or_section(key, rule, value, present, [&](Keys& keys) { describe(keys, held); });
+    if (present) section = std::move(held);
+  }
   template <class Entry>
   void list(const Key& key, Size size, std::vector<Entry>& values, const DescribeEntry<Entry>& describe) {
     visit_list(key, size,
@@ -266,6 +275,8 @@ class Keys {
                              std::optional<std::vector<int>>& value) = 0;
   /// `present` is whether the section is there; with `always` it is, though perhaps with nothing but defaults.
   virtual void visit_section(const Key& key, bool always, bool& present, const Describe& describe) = 0;
+  virtual void visit_real_or_section(const Key& key, const RealRule& rule, std::optional<Real>& value,
+                                     bool& present, const Describe& describe) = 0;
   virtual void visit_list(const Key& key, Size size, const Entries& entries) = 0;
   virtual void visit_named(const Key& key, const Entries& entries) = 0;
 

@@ -77,6 +77,26 @@ gas:
     faces: {x: [0, 0.5, 1], y: [0, 0.1, 0.4, 1], z: [0, 1]}
 )";
 
+/// Particles of every way to be spread in size.
+inline constexpr const char* powders_case = R"(domain: {min: [0, 0, 0], max: ["40 mm", "40 mm", "100 mm"]}
+time: {end: 0.1, particle_step: 1e-6}
+materials: {glass: {density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.22}}
+contacts: {pairs: [{between: [glass, glass], restitution: 0.9, sliding_friction: 0.3}]}
+particles:
+  - {material: glass, total_mass: "2 g", diameter: {uniform: {min: "1 mm", max: "2 mm"}},
+     fill: {box: {min: [0, 0, 0], max: ["40 mm", "40 mm", "20 mm"]}}}
+  - {material: glass, count: 300, diameter: {normal: {mean: "1.5 mm", sd: "0.3 mm", min: "1 mm", max: "2 mm"}},
+     fill: {box: {min: [0, 0, "20 mm"], max: ["40 mm", "40 mm", "40 mm"]}}}
+  - {material: glass, diameter: {log_normal: {median: "1.5 mm", geometric_sd: 1.3, by: mass, min: "0.8 mm", max: "3 mm"}},
+     fill: {box: {min: [0, 0, "40 mm"], max: ["40 mm", "40 mm", "60 mm"]}, solids_fraction: 0.1}}
+  - {material: glass, count: 200, diameter: {rosin_rammler: {size: "2 mm", spread: 2, min: "1 mm", max: "4 mm"}},
+     fill: {box: {min: [0, 0, "60 mm"], max: ["40 mm", "40 mm", "80 mm"]}}}
+  - {material: glass, count: 100, diameter: {table: {diameters: ["1 mm", "2 mm"], shares: [3, 1], by: mass}},
+     fill: {box: {min: [0, 0, "80 mm"], max: ["40 mm", "40 mm", "90 mm"]}}}
+  - {material: glass, count: 100, diameter: {table: {diameters: ["1 mm", "2 mm", "3 mm"], finer: [0, 0.2, 1]}},
+     fill: {box: {min: [0, 0, "90 mm"], max: ["40 mm", "40 mm", "100 mm"]}}}
+)";
+
 /// Two particles and nothing else.
 inline constexpr const char* two_particles_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
 time: {end: 0.1, particle_step: 1e-5}

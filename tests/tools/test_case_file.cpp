@@ -125,7 +125,7 @@ TEST(CaseFile, DefaultsFollowFromOtherKeys) {
 }
 
 TEST(CaseFile, ResolvedFileGivesTheSameCase) {
-  for (const char* text : {spouted_bed_case, channel_case, two_particles_case}) {
+  for (const char* text : {spouted_bed_case, channel_case, powders_case, two_particles_case}) {
     const CaseSpec spec = parse_case(text, "some_case.yaml");
     const std::string resolved = resolved_yaml(spec);
     const CaseSpec again = parse_case(resolved, "another_name.yaml");
@@ -139,6 +139,7 @@ TEST(CaseFile, ResolvedFileGivesTheSameCase) {
 void collect_paths(const core::KeyInfo& section, const std::string& path, std::set<std::string>& paths) {
   for (const auto& key : section.children) {
     const std::string here = path.empty() ? key.name : path + "." + key.name;
+    if (key.or_section) collect_paths(key, here, paths);
     if (key.type == core::KeyType::section) {
       collect_paths(key, here + (key.is_list || key.is_named ? ".*" : ""), paths);
     } else {
@@ -170,6 +171,7 @@ TEST(CaseFile, TheTestsCoverEveryKey) {
   EXPECT_GT(paths.size(), 100u);
   std::map<std::string, std::string> given = parse_case(spouted_bed_case, "c.yaml").lines;
   given.merge(std::map(parse_case(channel_case, "c.yaml").lines));
+  given.merge(std::map(parse_case(powders_case, "c.yaml").lines));
   const std::set<std::string> elsewhere{"coupling.transfer_grid.cells", "coupling.transfer_grid.growth",
                                         "coupling.transfer_grid.faces.x", "coupling.transfer_grid.faces.y",
                                         "coupling.transfer_grid.faces.z"};
@@ -286,8 +288,17 @@ TEST(CaseErrors, Populations) {
   EXPECT_EQ(bed_errors("particles.3.fill={box: {min: [0, 0, 0], max: [1, 1, 1]}}").substr(0, 74),
             at("- material: glass") + ": particles.3: fill and list are given; exactly one of fill, list");
   EXPECT_EQ(bed_errors("particles.0.diameter={normal: {mean: 1 mm, sd: 1 mm}}"),
-            "--set: particles.0.diameter: a section is given where a single value is expected; a number in m "
-            "or a string such as \"5 mm\"");
+            "--set: particles.0.diameter.normal.min: missing; a length greater than 0\n"
+            "--set: particles.0.diameter.normal.max: missing; a length greater than 0");
+  EXPECT_EQ(
+      bed_errors("particles.0.diameter={uniform: {min: 2 mm, max: 1 mm}}"),
+      "--set: particles.0.diameter: max must be greater than min; a distribution with sizes between its "
+      "bounds");
+  EXPECT_EQ(bed_errors("particles.0.diameter={}"),
+            "--set: particles.0.diameter: none is given; exactly one of uniform, normal, log_normal, "
+            "rosin_rammler, table");
+  EXPECT_EQ(bed_errors("particles.3.diameter={uniform: {min: 1 mm, max: 2 mm}}").substr(0, 95),
+            "--set: particles.3.diameter: particles of a list have no distribution; a length");
   EXPECT_EQ(bed_errors("particles.0.count=10000"),
             at("fill: {box: {min: [0, 0, \"10 mm\"]") +
                 ": particles.0.fill: 10000 particles do not fit: they would take 2.09 of the region's "
@@ -423,14 +434,44 @@ TEST(CaseWarnings, KeysWithoutUse) {
 TEST(CaseAmounts, Counts) {
   const CaseSpec spec = parse_case(spouted_bed_case, "c.yaml");
   // 1 g / (2500 kg/m3 pi/6 (1.5 mm)^3) = 226.35; 10 % of 10 x 10 x 9 mm3 / (pi/6 mm3) = 171.9.
-  EXPECT_EQ(particle_count(spec, spec.particles[1]), 226);
-  EXPECT_EQ(particle_count(spec, spec.particles[2]), 171);
+  EXPECT_EQ(particle_count(spec.particles[1]), 226);
+  EXPECT_EQ(particle_count(spec.particles[2]), 171);
   EXPECT_EQ(particle_count(spec), 100 + 226 + 171 + 2);
   EXPECT_EQ(diameter_range(spec).smallest, 1e-3);
   EXPECT_EQ(diameter_range(spec).largest, 3e-3);
   EXPECT_TRUE(can_meet(spec, 0, 0));
   EXPECT_TRUE(can_meet(spec, 0, 1));
   EXPECT_FALSE(can_meet(spec, 1, 2));
+}
+
+// Sums over the particles themselves, against the rules: by mass the nearest sum, by solids fraction the last below.
+TEST(CaseAmounts, DistributionsAreFilledUpToTheirTarget) {
+  const CaseSpec spec = parse_case(powders_case, "c.yaml");
+  const auto volume = [&](std::size_t population, std::size_t count) {
+    CaseSpec copy = spec;
+    copy.particles[population].filled = static_cast<std::int64_t>(count);
+    Real sum = 0;
+    for (const Real r : draw_radii(copy, population)) sum += 4.0 / 3.0 * M_PI * r * r * r;
+    return sum;
+  };
+  const auto by_mass = static_cast<std::size_t>(particle_count(spec.particles[0]));
+  const Real target = 0.002 / 2500;
+  const Real off = std::abs(volume(0, by_mass) - target);
+  EXPECT_LT(off, std::abs(volume(0, by_mass - 1) - target));
+  EXPECT_LT(off, std::abs(volume(0, by_mass + 1) - target));
+  const auto by_fraction = static_cast<std::size_t>(particle_count(spec.particles[2]));
+  EXPECT_LE(volume(2, by_fraction), 0.1 * 32e-6);
+  EXPECT_GT(volume(2, by_fraction + 1), 0.1 * 32e-6);
+  // The bounds count for lists and steps, not what happened to be drawn.
+  EXPECT_EQ(diameter_range(spec).smallest, 0.8e-3);
+  EXPECT_EQ(diameter_range(spec).largest, 4e-3);
+  // Populations draw their own numbers, the same ones at every reading, others with another seed.
+  EXPECT_EQ(draw_radii(spec, 0), draw_radii(parse_case(powders_case, "d.yaml"), 0));
+  EXPECT_NE(draw_radii(spec, 0), draw_radii(parse_case(powders_case, "c.yaml", {"seed=2"}), 0));
+  EXPECT_NE(draw_radii(spec, 0)[0], draw_radii(parse_case(powders_case, "c.yaml",
+                                                          {"particles.1.diameter={uniform: "
+                                                           "{min: 1 mm, max: 2 mm}}"}),
+                                               1)[0]);
 }
 
 // Every enumeration of the case file is held by position in its list.

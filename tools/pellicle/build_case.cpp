@@ -33,11 +33,11 @@ dem::PlaneWall make_side(const CaseSpec& spec, const WallSpec& wall, cfd::Side s
   return plane;
 }
 
-void add_filled(const CaseSpec& spec, const PopulationSpec& population, std::uint64_t seed,
+void add_filled(const CaseSpec& spec, std::size_t index, std::uint64_t seed,
                 std::vector<dem::ParticleSeed>& particles) {
+  const PopulationSpec& population = spec.particles[index];
   const FillSpec& fill = *population.fill;
-  const std::vector<Real> radii(static_cast<std::size_t>(particle_count(spec, population)),
-                                0.5 * population.diameter);
+  const std::vector<Real> radii = draw_radii(spec, index);
   dem::FillRegion region;
   if (fill.box) region = *fill.box;
   if (fill.cylinder)
@@ -48,9 +48,9 @@ void add_filled(const CaseSpec& spec, const PopulationSpec& population, std::uin
   const auto pattern = fill.pattern;
   const std::vector<Vec3> centres = dem::fill_region(region, pattern, radii, seed, present);
   if (centres.size() < radii.size()) {
-    const Real radius = 0.5 * population.diameter;
-    const Real fraction = static_cast<Real>(radii.size()) * 4.0 / 3.0 * std::numbers::pi * radius * radius *
-                          radius / dem::region_volume(region);
+    Real volume = 0;
+    for (const Real r : radii) volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    const Real fraction = volume / dem::region_volume(region);
     throw InputError(
         fill.where + ": " + std::to_string(radii.size()) + " particles do not fit, only " +
         std::to_string(centres.size()) + " do (the solids fraction would be " + std::to_string(fraction) +
@@ -131,8 +131,8 @@ std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec) {
       particles.push_back({p.position, p.velocity, p.spin, 0.5 * p.diameter, population.material, p.fixed});
     }
   }
-  for (const PopulationSpec& population : spec.particles) {
-    if (population.fill) add_filled(spec, population, seed++, particles);
+  for (std::size_t i = 0; i < spec.particles.size(); ++i) {
+    if (spec.particles[i].fill) add_filled(spec, i, seed++, particles);
   }
   return particles;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/random.hpp"
 #include "dem/fill.hpp"
 #include "dem/materials.hpp"
 #include "dem/neighbour_list.hpp"
@@ -26,33 +27,81 @@ Real region_volume(const FillSpec& fill) {
       dem::CylinderRegion{fill.cylinder->from, fill.cylinder->to, fill.cylinder->radius});
 }
 
-std::int64_t particle_count(const CaseSpec& spec, const PopulationSpec& population) {
-  if (!population.fill) return static_cast<std::int64_t>(population.list.size());
+Real mean_particle_volume(const PopulationSpec& population) {
+  if (!population.sizes) return sphere_volume(population.diameter);
+  return dem::SizeSampler(*population.sizes->distribution()).mean_volume();
+}
+
+std::int64_t count_fill(const CaseSpec& spec, std::size_t index) {
+  const PopulationSpec& population = spec.particles[index];
   if (population.count) return *population.count;
-  const Real volume = sphere_volume(population.diameter);
-  if (population.total_mass) {
-    const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
-    return whole_number(std::round(*population.total_mass / (density * volume)));
+  const bool by_mass = population.total_mass.has_value();
+  const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
+  const Real volume = by_mass ? *population.total_mass / density
+                              : *population.fill->solids_fraction * region_volume(*population.fill);
+  const Real expected = volume / mean_particle_volume(population);
+  if (!population.sizes) return whole_number(by_mass ? std::round(expected) : std::floor(expected));
+  if (expected > std::numeric_limits<Index>::max()) return whole_number(expected);  // refused later
+  const dem::SizeSampler sizes(*population.sizes->distribution());
+  Real filled = 0;
+  for (std::int64_t id = 0;; ++id) {
+    const Real next = sphere_volume(draw_diameter(spec, index, sizes, id));
+    if (filled + next > volume) {
+      const bool nearer = filled + next - volume < volume - filled;
+      return by_mass && nearer ? id + 1 : id;
+    }
+    filled += next;
   }
-  return whole_number(
-      std::floor(*population.fill->solids_fraction * region_volume(*population.fill) / volume));
+}
+
+Real draw_diameter(const CaseSpec& spec, std::size_t index, const dem::SizeSampler& sizes, std::int64_t id) {
+  return sizes.diameter(
+      core::random_uniform(spec.seed, core::Purpose::diameter, static_cast<std::int64_t>(index), id));
+}
+
+std::vector<Real> draw_radii(const CaseSpec& spec, std::size_t index) {
+  const PopulationSpec& population = spec.particles[index];
+  std::vector<Real> radii(static_cast<std::size_t>(population.filled), 0.5 * population.diameter);
+  if (!population.sizes) return radii;
+  const dem::SizeSampler sizes(*population.sizes->distribution());
+  for (std::size_t p = 0; p < radii.size(); ++p) {
+    radii[p] = 0.5 * draw_diameter(spec, index, sizes, static_cast<std::int64_t>(p));
+  }
+  return radii;
+}
+
+std::int64_t particle_count(const PopulationSpec& population) {
+  return population.fill ? population.filled : static_cast<std::int64_t>(population.list.size());
 }
 
 std::int64_t particle_count(const CaseSpec& spec) {
   std::int64_t count = 0;
-  for (const auto& population : spec.particles) count += particle_count(spec, population);
+  for (const auto& population : spec.particles) count += particle_count(population);
   return count;
+}
+
+DiameterRange diameter_range(const PopulationSpec& population) {
+  DiameterRange range;
+  const auto add = [&](Real smallest, Real largest) {
+    range.smallest = range.smallest == 0 ? smallest : std::min(range.smallest, smallest);
+    range.largest = std::max(range.largest, largest);
+  };
+  if (population.sizes) {
+    const dem::SizeSampler sizes(*population.sizes->distribution());
+    add(sizes.smallest(), sizes.largest());
+  } else if (population.fill) {
+    add(population.diameter, population.diameter);
+  }
+  for (const auto& particle : population.list) add(particle.diameter, particle.diameter);
+  return range;
 }
 
 DiameterRange diameter_range(const CaseSpec& spec) {
   DiameterRange range;
-  const auto add = [&](Real diameter) {
-    range.smallest = range.smallest == 0 ? diameter : std::min(range.smallest, diameter);
-    range.largest = std::max(range.largest, diameter);
-  };
   for (const auto& population : spec.particles) {
-    if (population.fill) add(population.diameter);
-    for (const auto& particle : population.list) add(particle.diameter);
+    const DiameterRange own = diameter_range(population);
+    range.smallest = range.smallest == 0 ? own.smallest : std::min(range.smallest, own.smallest);
+    range.largest = std::max(range.largest, own.largest);
   }
   return range;
 }
@@ -73,7 +122,7 @@ bool can_meet(const CaseSpec& spec, int material_a, int material_b) {
   if (material_a == material_b) {
     std::int64_t count = 0;
     for (const auto& population : spec.particles) {
-      if (population.material == material_a) count += particle_count(spec, population);
+      if (population.material == material_a) count += particle_count(population);
     }
     return count > 1 || (count == 1 && of_walls(material_a));
   }
@@ -89,8 +138,7 @@ StepBound particle_step_bound(const CaseSpec& spec) {
   std::vector<Real> smallest_radius(materials.size(), std::numeric_limits<Real>::infinity());
   for (const auto& population : spec.particles) {
     Real& smallest = smallest_radius[static_cast<std::size_t>(population.material)];
-    if (population.fill) smallest = std::min(smallest, population.diameter / 2);
-    for (const auto& particle : population.list) smallest = std::min(smallest, particle.diameter / 2);
+    smallest = std::min(smallest, diameter_range(population).smallest / 2);
   }
   const auto bound = dem::compute_time_step_bound(materials, smallest_radius, spec.time.impact_speed);
   return {bound.bound, bound.rayleigh_time, bound.contact_time};

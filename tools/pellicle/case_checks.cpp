@@ -173,14 +173,13 @@ class Checker {
     if (fill.cylinder && !(inside(fill.cylinder->from) && inside(fill.cylinder->to))) {
       wrong(fill.where, "cylinder", "its axis reaches out of the domain; " + domain_text());
     }
-    const std::int64_t count = particle_count(spec_, population);
+    const std::int64_t count = particle_count(population);
     if (count < 1) {
       problems_.add(population.where,
                     "it comes to no particle at all; a mass or solids fraction of at least one particle");
       return;
     }
-    const Real d = population.diameter;
-    const Real fraction = static_cast<Real>(count) * std::numbers::pi / 6 * d * d * d / region_volume(fill);
+    const Real fraction = static_cast<Real>(count) * mean_particle_volume(population) / region_volume(fill);
     const bool lattice = fill.pattern == dem::FillPattern::lattice;
     const Real limit = lattice ? lattice_limit : random_limit;
     if (fraction > limit) {

@@ -18,14 +18,28 @@ bool can_meet(const CaseSpec& spec, int material_a, int material_b);
 /// Volume of the region of a fill [m3].
 Real region_volume(const FillSpec& fill);
 
-/// Number of particles of a population; a fill by mass or solids fraction is rounded to whole particles.
-std::int64_t particle_count(const CaseSpec& spec, const PopulationSpec& population);
+/// Mean volume of the particles of a fill, expected for a distribution [m3].
+Real mean_particle_volume(const PopulationSpec& population);
+
+/// How many particles the fill of a population comes to. By total mass the last particle is the one that brings the
+/// sum nearest to it; by solids fraction none more than fits below it. The place of a population among all is part of
+/// what its random diameters depend on.
+std::int64_t count_fill(const CaseSpec& spec, std::size_t population);
+
+/// Diameter of the particle `id` of a population with a distribution [m].
+Real draw_diameter(const CaseSpec& spec, std::size_t population, const dem::SizeSampler& sizes,
+                   std::int64_t id);
+/// Radii of all particles of a population's fill [m].
+std::vector<Real> draw_radii(const CaseSpec& spec, std::size_t population);
+
+std::int64_t particle_count(const PopulationSpec& population);
 std::int64_t particle_count(const CaseSpec& spec);
 
-/// Diameters of the smallest and largest particle [m]; 0 without particles.
+/// Diameters of the smallest and largest particle [m], those that a distribution allows; 0 without particles.
 struct DiameterRange {
   Real smallest = 0, largest = 0;
 };
+DiameterRange diameter_range(const PopulationSpec& population);
 DiameterRange diameter_range(const CaseSpec& spec);
 
 /// Smallest width of a periodic domain [m]: no particle may meet two images of another one.

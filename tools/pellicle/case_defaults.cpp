@@ -1,8 +1,12 @@
 #include "tools/pellicle/case_defaults.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "tools/pellicle/case_checks.hpp"
 #include "tools/pellicle/case_file.hpp"
 
 namespace pellicle::tools {
@@ -53,11 +57,28 @@ Real default_thickness(const CaseSpec& spec, const LineSpec& line) {
   return thickness;
 }
 
+/// How many particles each fill comes to.
+void count_fills(CaseSpec& spec, core::InputProblems& problems) {
+  for (std::size_t i = 0; i < spec.particles.size(); ++i) {
+    PopulationSpec& population = spec.particles[i];
+    if (!population.fill) continue;
+    try {
+      if (population.sizes)
+        (void)dem::SizeSampler(*population.sizes->distribution());  // throws here, not later
+      population.filled = count_fill(spec, i);
+    } catch (const std::invalid_argument& error) {
+      problems.add(spec.where(fmt::format("particles.{}.diameter", i)),
+                   fmt::format("{}; a distribution with sizes between its bounds", error.what()));
+    }
+  }
+}
+
 }  // namespace
 
 void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
   if (spec.title.empty()) spec.title = case_name(spec.file);
   fill_in_time(spec, problems);
+  count_fills(spec, problems);
   if (spec.gas && spec.coupling.transfer_grid.cells.x == 0) spec.coupling.transfer_grid = spec.gas->grid;
   for (auto& line : spec.output.lines) {
     if (line.thickness == 0) line.thickness = default_thickness(spec, line);

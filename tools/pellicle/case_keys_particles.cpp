@@ -1,4 +1,4 @@
-// Keys of materials, walls, contacts and particles.
+// Keys of materials, walls and contacts.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -96,91 +96,6 @@ void describe_pair(Keys& keys, PairSpec& pair, CaseSpec& spec) {
             {dimension::pure_number, range::non_negative}, pair.rolling_friction);
 }
 
-void describe_cylinder(Keys& keys, CylinderSpec& cylinder) {
-  keys.vector({"from", "one end of the axis", Need::required}, {dimension::length}, cylinder.from);
-  keys.vector({"to", "other end of the axis", Need::required}, {dimension::length}, cylinder.to);
-  keys.real({"radius", "of the cylinder", Need::required}, {dimension::length, range::positive},
-            cylinder.radius);
-  if (keys.reading() && keys.given("from") && keys.given("to") && cylinder.from == cylinder.to) {
-    keys.problem("to", "it is the same point as from; the other end of the axis");
-  }
-}
-
-void describe_fill(Keys& keys, FillSpec& fill) {
-  if (keys.reading()) fill.where = keys.where();
-  keys.section<Box>({"box", "the region is a box"}, fill.box, describe_box);
-  keys.section<CylinderSpec>({"cylinder", "the region is a cylinder"}, fill.cylinder, describe_cylinder);
-  keys.exactly_one({"box", "cylinder"});
-  keys.choice({"pattern", "how particles are placed"}, fill_patterns, fill.pattern);
-  keys.real(
-      {"solids_fraction", "as many particles as give this share of the region's volume; in place of count"},
-      {dimension::pure_number, {.min = 0, .max = 0.74, .min_excluded = true}}, fill.solids_fraction);
-}
-
-void describe_listed(Keys& keys, ListedParticleSpec& particle) {
-  keys.vector({"position", "of the centre", Need::required}, {dimension::length}, particle.position);
-  keys.vector({"velocity", "initial", Need::has_default, "that of the population"}, {dimension::velocity},
-              particle.velocity);
-  keys.vector({"spin", "initial angular velocity", Need::has_default, "that of the population"},
-              {dimension::angular_velocity}, particle.spin);
-  real_or_unset(keys, {"diameter", "of this particle", Need::has_default, "that of the population"},
-                {dimension::length, range::positive}, particle.diameter);
-  keys.flag({"fixed", "whether it stays in place", Need::has_default, "that of the population"},
-            particle.fixed);
-}
-
-/// How many particles a fill is to have is said in exactly one way.
-void check_amount(Keys& keys, const PopulationSpec& population) {
-  const int ways = (population.count ? 1 : 0) + (population.total_mass ? 1 : 0) +
-                   (population.fill && population.fill->solids_fraction ? 1 : 0);
-  if (population.fill) {
-    if (ways != 1) {
-      keys.problem(
-          {}, fmt::format("{} of count, total_mass and fill.solids_fraction {} given; exactly one of them",
-                          ways, ways == 1 ? "is" : "are"));
-    }
-    if (!keys.given("diameter")) {
-      keys.problem("diameter", "missing; a fill needs a length greater than 0");
-    }
-  } else {
-    for (const auto* key : {"count", "total_mass"}) {
-      if (keys.given(key)) keys.problem(key, "the list says how many; only with fill");
-    }
-  }
-}
-
-void describe_population(Keys& keys, PopulationSpec& population, CaseSpec& spec) {
-  if (keys.reading()) population.where = keys.where();
-  material_key(keys, {"material", "one of materials", Need::required}, spec, population.material, false);
-  keys.whole({"count", "number of particles of a fill"}, {}, population.count);
-  keys.real({"total_mass", "mass of all particles of a fill, in place of count"},
-            {dimension::mass, range::positive}, population.total_mass);
-  real_or_unset(
-      keys,
-      {"diameter", "of each particle", Need::has_default, "required with fill; else that of each particle"},
-      {dimension::length, range::positive}, population.diameter);
-  keys.vector({"velocity", "initial"}, {dimension::velocity}, population.velocity);
-  keys.vector({"spin", "initial angular velocity"}, {dimension::angular_velocity}, population.spin);
-  keys.flag({"fixed", "stays in place, is felt by other particles and by the gas"}, population.fixed);
-  keys.section<FillSpec>({"fill", "a region to be filled"}, population.fill, describe_fill);
-  keys.list<ListedParticleSpec>(
-      {"list", "particles one by one; ids count them first, then those of fills, in the order of the file"},
-      Size{1}, population.list, [&](Keys& inner, ListedParticleSpec& particle) {
-        if (inner.reading()) {
-          particle.velocity = population.velocity;
-          particle.spin = population.spin;
-          particle.diameter = population.diameter;
-          particle.fixed = population.fixed;
-        }
-        describe_listed(inner, particle);
-        if (inner.reading() && particle.diameter == 0) {
-          inner.problem("diameter", "missing here and in the population; a length greater than 0");
-        }
-      });
-  keys.exactly_one({"fill", "list"});
-  if (keys.reading()) check_amount(keys, population);
-}
-
 }  // namespace
 
 void describe_materials_and_walls(Keys& keys, CaseSpec& spec) {
@@ -214,12 +129,6 @@ void describe_contacts(Keys& keys, CaseSpec& spec) {
                    {dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true}},
                    contacts.overlap_limit);
       });
-}
-
-void describe_particles(Keys& keys, CaseSpec& spec) {
-  keys.list<PopulationSpec>(
-      {"particles", "populations; without any the case is gas alone"}, {}, spec.particles,
-      [&](Keys& inner, PopulationSpec& population) { describe_population(inner, population, spec); });
 }
 
 }  // namespace pellicle::tools

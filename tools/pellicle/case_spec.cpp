@@ -11,6 +11,15 @@ std::string CaseSpec::where(const std::string& path) const {
   }
 }
 
+std::optional<dem::SizeDistribution> SizesSpec::distribution() const {
+  if (uniform) return *uniform;
+  if (normal) return *normal;
+  if (log_normal) return *log_normal;
+  if (rosin_rammler) return *rosin_rammler;
+  if (table) return *table;
+  return std::nullopt;
+}
+
 CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {
   std::array<std::vector<Real>, 3> faces;
   for (int axis = 0; axis < 3; ++axis) {

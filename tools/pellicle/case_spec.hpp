@@ -17,6 +17,7 @@
 #include "core/vector.hpp"
 #include "coupling/coupling_options.hpp"
 #include "dem/fill.hpp"
+#include "dem/size_distribution.hpp"
 
 namespace pellicle::tools {
 
@@ -86,6 +87,18 @@ struct ListedParticleSpec {
   bool fixed = false;
 };
 
+/// How diameters are spread; exactly one is set.
+struct SizesSpec {
+  std::optional<dem::UniformSizes> uniform;
+  std::optional<dem::NormalSizes> normal;
+  std::optional<dem::LogNormalSizes> log_normal;
+  std::optional<dem::RosinRammlerSizes> rosin_rammler;
+  std::optional<dem::TableSizes> table;
+
+  /// The one that is set, if any.
+  std::optional<dem::SizeDistribution> distribution() const;
+};
+
 /// Particles of one material: either a fill or a list.
 struct PopulationSpec {
   std::string where;
@@ -93,12 +106,14 @@ struct PopulationSpec {
   std::optional<Index>
       count;  ///< of count, total_mass and fill->solids_fraction exactly one is set with a fill
   std::optional<Real> total_mass;  ///< [kg]
-  Real diameter = 0;               ///< of a filled population [m]; 0 if every listed particle has its own
+  Real diameter = 0;  ///< of a filled population [m]; 0 with `sizes`, or if every listed particle has its own
+  std::optional<SizesSpec> sizes;  ///< of a filled population whose particles differ
   Vec3 velocity;                   ///< initial, of a filled population; default of listed particles [m/s]
   Vec3 spin;                       ///< likewise [rad/s]
   bool fixed = false;              ///< likewise: never moves, but is felt by others and by the gas
   std::optional<FillSpec> fill;
   std::vector<ListedParticleSpec> list;
+  std::int64_t filled = 0;  ///< particles of the fill: follows from the above, see count_fill
 };
 
 struct PlaneSpec {

@@ -36,11 +36,13 @@ std::string millimetres(Real length) { return fmt::format("{:.4g}", 1e3 * length
 
 void add_particles(Facts& facts, const CaseSpec& spec) {
   Real mass = 0;
-  for (const auto& population : spec.particles) {
+  for (std::size_t i = 0; i < spec.particles.size(); ++i) {
+    const auto& population = spec.particles[i];
     const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
     const auto sphere = [&](Real d) { return density * std::numbers::pi / 6 * d * d * d; };
-    if (population.fill)
-      mass += static_cast<Real>(particle_count(spec, population)) * sphere(population.diameter);
+    if (population.fill) {
+      for (const Real radius : draw_radii(spec, i)) mass += sphere(2 * radius);
+    }
     for (const auto& particle : population.list) mass += sphere(particle.diameter);
   }
   const DiameterRange diameters = diameter_range(spec);

@@ -6,6 +6,7 @@
 #include "core/model_variant.hpp"
 #include "coupling/coupling_options.hpp"
 #include "dem/contact_laws.hpp"
+#include "dem/size_distribution.hpp"
 #include "tools/pellicle/output_fields.hpp"
 
 namespace pellicle::tools {
@@ -52,6 +53,8 @@ const std::vector<ModelFamily>& model_families() {
       {"contacts.model.normal", "Normal contact force", normal_contact_models},
       {"contacts.model.tangential", "Tangential contact force", tangential_contact_models},
       {"contacts.model.rolling", "Rolling resistance", rolling_models},
+      {"particles.diameter", "Ways in which the diameters of a fill are spread",
+       core::model_list<dem::SizeDistribution>()},
       {"particles.fill.pattern", "Ways to fill a region with particles", fill_patterns},
       {"gas.convection", "Convection schemes of the gas", cfd::convection_models},
       {"coupling.drag", "Drag laws", drag_laws},

@@ -40,6 +40,7 @@ Json section_schema(const KeyInfo& section);
 Json value_schema(const KeyInfo& key) {
   switch (key.type) {
     case KeyType::real:
+      if (key.or_section) return {{"anyOf", {number_schema(key.real_rule), section_schema(key)}}};
       return number_schema(key.real_rule);
     case KeyType::whole:
       return {{"type", "integer"}, {"minimum", key.whole_rule.min}, {"maximum", key.whole_rule.max}};
@@ -144,6 +145,7 @@ std::string allowed_text(const KeyInfo& key) {
       std::isinf(key.real_rule.range.max)) {
     one = key.real_rule.dimension.unit.empty() ? "a number" : std::string(key.real_rule.dimension.name);
   }
+  if (key.or_section) one += ", or a section, see below";
   if (!key.is_list) return one;
   return fmt::format("a list of {}, each {}{}", core::allowed_size(key.size),
                      key.type == KeyType::choice && !one.starts_with("a ") ? "one of " : "", one);
@@ -175,7 +177,7 @@ void add_section(const KeyInfo& section, const std::string& path, std::string& m
                             otherwise, key.text);
   }
   for (const auto& key : section.children) {
-    if (key.type != KeyType::section) continue;
+    if (key.type != KeyType::section && !key.or_section) continue;
     const std::string ending = key.is_list ? "[]" : (key.is_named ? ".NAME" : "");
     add_section(key, (path.empty() ? "" : path + ".") + key.name + ending, markdown);
   }
