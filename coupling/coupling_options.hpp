@@ -46,6 +46,8 @@ struct CouplingOptions {
   /// Share of the pending momentum that the gas is given a step, in (0, 1]. docs/theory/coupling.md derives the bound
   /// 2 / (1 + 2 (1 - eps) / eps).
   Real pending_release = 0.1;
+  /// What particles bring to the cells is smoothed over this length (Smoothing) [m]; 0: it is not.
+  Real smoothing_length = 0;
 };
 
 struct GasProperties {

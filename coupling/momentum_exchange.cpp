@@ -127,6 +127,9 @@ void check(const CouplingOptions& options, const GasProperties& properties) {
     throw InputError("coupling.pending_release: must be above 0 and below " +
                      std::to_string(largest_release));
   }
+  if (!(options.smoothing_length >= 0 && std::isfinite(options.smoothing_length))) {
+    throw InputError("coupling.smoothing_length: must be 0 (no smoothing) or a positive length");
+  }
   if (!(properties.density > 0 && properties.viscosity > 0)) {
     throw InputError("gas: density and viscosity must be positive");
   }
@@ -145,6 +148,7 @@ MomentumExchange::MomentumExchange(const CouplingOptions& options, const Cartesi
       gas_footprint_(GridLocator(gas), options.deposition),
       sums_(transfer.cell_count()),
       bound_(transfer_footprint_.grid(), options.minimum_void_fraction),
+      smoothing_(transfer_footprint_.grid(), options.smoothing_length),
       to_gas_(transfer, gas),
       to_transfer_(gas, transfer) {
   check(options, properties);
@@ -235,6 +239,7 @@ void MomentumExchange::deposit_loads(const dem::Particles& particles, Real gas_s
                                     options_.exchange, gas_step > 0 ? 1 / gas_step : 0});
   sums_.compute(transfer_footprint_, particle_load_, cell_load_);
   bound_report_ = bound_.apply(cell_load_);
+  smoothing_.apply(cell_load_);  // raises no solids fraction above the largest: the bound still holds
   const Index cells = transfer_.cell_count();
   Kokkos::parallel_for("coupling::momentum_exchange::compute_void_fraction", DeviceRange(0, cells),
                        ComputeVoidFraction{transfer_footprint_.grid(), cell_load_, void_fraction_});

@@ -11,6 +11,7 @@
 #include "coupling/fluid_force.hpp"
 #include "coupling/footprint.hpp"
 #include "coupling/grid_mapping.hpp"
+#include "coupling/smoothing.hpp"
 #include "coupling/void_fraction_bound.hpp"
 #include "dem/particles.hpp"
 
@@ -97,6 +98,7 @@ class MomentumExchange {
   Footprint gas_footprint_;  // in use if not one_grid_
   CellSums sums_;
   VoidFractionBound bound_;
+  Smoothing smoothing_;
   DeviceArray<Vec3> gas_velocity_, gas_pressure_gradient_;
   DeviceArray<Real> void_fraction_;
   DeviceArray<SampledGas> sampled_;
