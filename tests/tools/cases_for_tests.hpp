@@ -51,7 +51,8 @@ gas:
   solver: {pressure_tolerance: 1e-9, loose_pressure_tolerance: 1e-2, momentum_tolerance: 1e-8, outer_tolerance: 1e-5,
            max_outer_iterations: 4, max_linear_iterations: 100, velocity_relaxation: 0.9, pressure_solver: amgcl}
 coupling: {drag: koch_hill, deposition: centroid, transfer_grid: {cell_size: "5 mm"}, exchange: explicit,
-           pressure_gradient_force: false, coefficients: substep, minimum_void_fraction: 0.4, pending_release: 0.2}
+           pressure_gradient_force: false, coefficients: substep, minimum_void_fraction: 0.4, pending_release: 0.2,
+           smoothing_length: "6 mm"}
 output:
   checkpoint: {every: "0.1 s"}
   snapshots: {every: "0.05 s", particles: [velocity, speed], gas: [pressure]}

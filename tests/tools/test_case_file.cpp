@@ -89,6 +89,7 @@ TEST(CaseFile, ReadsTheBed) {
   EXPECT_EQ(spec.coupling.exchange, coupling::Exchange::explicit_);
   EXPECT_EQ(spec.coupling.coefficients, coupling::Coefficients::substep);
   EXPECT_EQ(spec.coupling.transfer_grid.cells, (Index3{8, 2, 20}));
+  EXPECT_EQ(spec.coupling.smoothing_length, 0.006);
   EXPECT_EQ(spec.output.lines[0].thickness, 0.004);
   EXPECT_EQ(*spec.output.lines[0].depth_average, 1);
   EXPECT_EQ(spec.output.lines[0].average.to, 1.5);
@@ -378,6 +379,8 @@ TEST(CaseErrors, Grids) {
             "--set: coupling.transfer_grid.cell_size: it gives 40000000 cells along x; at most 100000");
   EXPECT_EQ(bed_errors("coupling.pending_release=0.9"),
             "--set: coupling.pending_release: 0.9 is unstable with minimum_void_fraction 0.4; less than 0.5");
+  EXPECT_EQ(bed_errors("coupling.smoothing_length=-1 mm"),
+            "--set: coupling.smoothing_length: \"-1 mm\" is out of range; a length at least 0");
   EXPECT_EQ(
       bed_errors("domain.max=[0.04, 0.002, 0.1]").find("too narrow for these particles") != std::string::npos,
       true);

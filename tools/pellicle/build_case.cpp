@@ -147,6 +147,7 @@ coupling::CouplingOptions make_coupling_options(const CaseSpec& spec) {
   options.pressure_gradient_force = c.pressure_gradient_force;
   options.minimum_void_fraction = c.minimum_void_fraction;
   options.pending_release = c.pending_release;
+  options.smoothing_length = c.smoothing_length;
   return options;
 }
 

@@ -240,6 +240,11 @@ void describe_coupling(Keys& keys, CaseSpec& spec) {
             {"pending_release",
              "share of the momentum carried over that the gas gets back a step; large ones are unstable"},
             {dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true}}, options.pending_release);
+        inner.real(
+            {"smoothing_length",
+             "b: solids and forces of particles are spread by diffusion, about as exp(-r2/b2); 0: they "
+             "are not"},
+            {dimension::length, range::non_negative}, options.smoothing_length);
       });
   if (keys.reading() && held) spec.coupling = *held;
 }

@@ -155,6 +155,7 @@ struct CouplingSpec {
   coupling::Coefficients coefficients = coupling::Coefficients::gas_step;
   Real minimum_void_fraction = 0.36;
   Real pending_release = 0.1;  ///< share of the carried momentum that the gas gets back a step
+  Real smoothing_length = 0;   ///< of what particles bring to the cells [m]; 0: none
 };
 
 /// An interval of simulated time; both ends are filled in.
