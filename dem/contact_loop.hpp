@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "dem/contact_history.hpp"
 #include "dem/contact_laws.hpp"
 #include "dem/neighbour_list.hpp"
 #include "dem/particles.hpp"
@@ -26,6 +27,7 @@ struct ContactResult {
   DeviceArray<std::int32_t> touching;  ///< partners and walls touched, of the last substep (rolling needs it)
   DeviceArray<std::int32_t> touching_new;
   DeviceArray<BlockReport> report;
+  SpringSlots springs;  ///< of laws that remember; read and written
 };
 
 /// Everything the contact loop reads.

@@ -10,12 +10,14 @@
 
 namespace pellicle::dem {
 
-Engine::Engine(const EngineSetup& setup) : setup_(setup), flags_("dem::engine::flags") {
+Engine::Engine(const EngineSetup& setup)
+    : setup_(setup), history_(setup.contacts.springs()), flags_("dem::engine::flags") {
   if (!(setup.time_step > 0)) throw std::invalid_argument("the particle time step must be positive");
   auto& options = setup_.contacts;
   std::visit([&](auto& law) { law.clip = options.clip; }, options.normal);
   std::visit([&](auto& law) { law.time_step = setup.time_step; }, options.tangential);
   std::visit([&](auto& law) { law.time_step = setup.time_step; }, options.rolling);
+  if (std::holds_alternative<Linear>(options.normal)) require_stiffness(setup_.materials, setup_.pairs);
   planes_ = make_device_planes(setup_.walls);
   wall_report_ = make_array<WallReport>("dem::engine::wall_report", wall_blocks);
   const auto table = make_pair_table(setup_.materials, setup_.pairs, options.clip);
@@ -95,7 +97,10 @@ void Engine::begin_substep(core::Timers& timers) {
 }
 
 void Engine::build_lists() {
+  history_.pack(list_);
   search_.front().build(particles_, setup_.time_step, list_);
+  history_.unpack(list_);
+  result_.springs = history_.slots();
   build_wall_list(particles_, list_, planes_, wall_list_);
 }
 

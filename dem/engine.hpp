@@ -8,6 +8,7 @@
 
 #include "core/checkpoint.hpp"
 #include "core/timers.hpp"
+#include "dem/contact_history.hpp"
 #include "dem/contact_loop.hpp"
 #include "dem/materials.hpp"
 #include "dem/motion.hpp"
@@ -138,6 +139,7 @@ class Engine {
   std::vector<NeighbourSearch> search_;  // none before there are particles
   NeighbourList list_;
   ContactResult result_;
+  ContactHistory history_;
   DeviceArray<std::int32_t> touching_scratch_;
   MotionStep step_;
   MotionFlagsView flags_;

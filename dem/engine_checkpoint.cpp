@@ -37,6 +37,7 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/acceleration", host_copy(particles_.acceleration, n));
   file.write("dem/angular_acceleration", host_copy(particles_.angular_acceleration, n));
   file.write("dem/touching", host_copy(result_.touching, n));
+  history_.save(file);
 }
 
 void Engine::load(core::CheckpointReader& file) {
@@ -57,6 +58,7 @@ void Engine::load(core::CheckpointReader& file) {
   read_array(file, "dem/acceleration", particles_.acceleration);
   read_array(file, "dem/angular_acceleration", particles_.angular_acceleration);
   read_array(file, "dem/touching", result_.touching);
+  history_.load(file);
   smallest_radius_ = file.read_double("dem/smallest_radius");
   largest_radius_ = file.read_double("dem/largest_radius");
   start_count_ = file.read_int64("dem/start_count");

@@ -100,15 +100,18 @@ void Engine::allocate(std::size_t n) {
   result_.report = make_array<BlockReport>("dem::engine_memory::report",
                                            static_cast<std::size_t>(contact_block_count(particles_.count)));
   touching_scratch_ = make_array<std::int32_t>("dem::engine_memory::touching_scratch", n);
+  history_.clear();
   list_valid_ = false;
 }
 
 void Engine::sort_memory() {
   if (search_.empty()) return;
   // A build yields the canonical order; the lists it also makes name particles by their old place and are dropped.
+  history_.pack(list_);
   search_.front().build(particles_, setup_.time_step, list_);
   scratch_.count = particles_.count;
   permute(particles_, result_.touching, search_.front().order(), scratch_, touching_scratch_);
+  history_.reorder(search_.front().order(), particles_.count, particles_.count);
   std::swap(particles_, scratch_);
   std::swap(result_.touching, touching_scratch_);
   list_valid_ = false;
@@ -126,6 +129,8 @@ void Engine::remove_left() {
   const Vec3 momentum = compute_totals().momentum;
   scratch_.count = staying;
   permute(particles_, result_.touching, order, scratch_, touching_scratch_);
+  history_.pack(list_);
+  history_.reorder(order, particles_.count, staying);
   std::swap(particles_, scratch_);
   std::swap(result_.touching, touching_scratch_);
   list_valid_ = false;

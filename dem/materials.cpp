@@ -76,10 +76,12 @@ std::vector<PairParameters> make_pair_table(const std::vector<Material>& materia
     p.effective_shear_modulus = effective_shear_modulus(materials[a], materials[b]);
     p.damping_ratio = compute_damping_ratio(pair.restitution, clip);
     if (p.effective_youngs_modulus > 0) {
-      p.tangential_damping_ratio = 2 * std::sqrt(4 * p.effective_shear_modulus / p.effective_youngs_modulus);
+      p.tangential_stiffness_ratio = 4 * p.effective_shear_modulus / p.effective_youngs_modulus;
+      p.tangential_damping_ratio = 2 * std::sqrt(p.tangential_stiffness_ratio);
     }
     p.sliding_friction = pair.sliding_friction;
     p.rolling_friction = pair.rolling_friction;
+    p.normal_stiffness = pair.normal_stiffness;
     table[a * n + b] = table[b * n + a] = p;
     given[a * n + b] = given[b * n + a] = true;
   }
@@ -102,6 +104,15 @@ void require_pairs(const std::vector<Material>& materials, const std::vector<Pai
                                     materials[b].name);
       }
     }
+  }
+}
+
+void require_stiffness(const std::vector<Material>& materials, const std::vector<PairProperties>& pairs) {
+  for (const PairProperties& pair : pairs) {
+    if (pair.normal_stiffness > 0) continue;
+    throw std::invalid_argument(
+        "the linear contact between " + materials.at(static_cast<std::size_t>(pair.material_a)).name +
+        " and " + materials.at(static_cast<std::size_t>(pair.material_b)).name + " has no normal stiffness");
   }
 }
 

@@ -25,6 +25,7 @@ struct PairProperties {
   Real restitution = 1;       ///< [-], in (0, 1]
   Real sliding_friction = 0;  ///< [-]
   Real rolling_friction = 0;  ///< [-], a ratio to the reduced radius R*
+  Real normal_stiffness = 0;  ///< k [N/m] of the linear normal law
 };
 
 /// Λ that makes a Hertz or linear contact with damping 2√(5/6) Λ √(S_n m*) (linear: 2 Λ √(k m*)) rebound with the
@@ -41,6 +42,9 @@ std::vector<PairParameters> make_pair_table(const std::vector<Material>& materia
 /// of particles and another one of particles or of walls. Both flags are one a material.
 void require_pairs(const std::vector<Material>& materials, const std::vector<PairProperties>& pairs,
                    const std::vector<bool>& of_particles, const std::vector<bool>& of_walls);
+
+/// Throws std::invalid_argument naming both materials of a pair without the stiffness that the linear law needs.
+void require_stiffness(const std::vector<Material>& materials, const std::vector<PairProperties>& pairs);
 
 /// Largest stable particle time step [s]: min(0.2 T_Rayleigh, t_c/20) over all materials and pairs (PHYSICS.md 3).
 struct TimeStepBound {

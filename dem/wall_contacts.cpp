@@ -113,8 +113,9 @@ struct WallContactKernel {
       const Vec3 dv = motion.velocity() - wall.velocity;
       const ContactState c{self.radius - distance, self.radius, 1 / motion.inverse_mass, dot(dv, n)};
       const Real compliance = spin_compliance_of(out.touching(p), motion.inverse_mass, self.radius);
-      const ContactForce f =
-          laws(c, pair, n, dv, distance * motion.spin(), distance, motion.spin(), compliance);
+      ContactSprings springs;
+      const ContactForce f = laws(c, pair, n, dv, distance * motion.spin(), distance, motion.spin(),
+                                  compliance, 0.5 * motion.spin(), springs);
       force += f.force;
       torque += f.torque + f.rolling_torque;
       ++contacts;

@@ -50,6 +50,12 @@ inline dem::EngineSetup glass_setup(const Vec3& size, Real time_step, Real resti
   return setup;
 }
 
+/// Laws with springs, instead of those that forget.
+inline void let_contacts_remember(dem::EngineSetup& setup) {
+  setup.contacts.tangential = dem::Mindlin{};
+  setup.contacts.rolling = dem::Epsd2{};
+}
+
 /// Walls on the sides of the domain that neither repeat nor are open.
 inline void add_box_walls(dem::EngineSetup& setup) {
   for (int axis = 0; axis < 3; ++axis) {

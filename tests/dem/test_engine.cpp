@@ -66,8 +66,7 @@ EngineSetup cluster_setup() {
   return setup;
 }
 
-TEST(Engine, ConservesMomentumAndAngularMomentumOfAFreeCluster) {
-  const auto setup = cluster_setup();
+void expect_momentum_and_angular_momentum_constant(const EngineSetup& setup) {
   Engine engine(setup);
   engine.set_particles(make_cluster(100, 31));
   const Sums start = sum_half_step(grains(engine.particles()), setup.time_step);
@@ -89,6 +88,21 @@ TEST(Engine, ConservesMomentumAndAngularMomentumOfAFreeCluster) {
   const ParticleTotals totals = engine.compute_totals();
   EXPECT_LT(norm(totals.momentum - end.momentum), 1e-14 * gross);
   EXPECT_LT(norm(totals.angular_momentum - end.angular_momentum), 1e-14 * angular_gross);
+}
+
+TEST(Engine, ConservesMomentumAndAngularMomentumOfAFreeCluster) {
+  expect_momentum_and_angular_momentum_constant(cluster_setup());
+}
+
+TEST(Engine, ConservesThemWithLawsThatRemember) {
+  auto setup = cluster_setup();
+  tests::let_contacts_remember(setup);
+  expect_momentum_and_angular_momentum_constant(setup);
+  setup.contacts.tangential = MindlinDeresiewicz{};
+  expect_momentum_and_angular_momentum_constant(setup);
+  setup.contacts.normal = Linear{};
+  for (PairProperties& pair : setup.pairs) pair.normal_stiffness = 2000;
+  expect_momentum_and_angular_momentum_constant(setup);
 }
 
 TEST(Engine, BooksEveryImpulse) {
@@ -241,6 +255,9 @@ TEST(Engine, RefusesASetupThatCannotWork) {
   auto setup = tests::glass_setup({0.1, 0.1, 0.1}, 0);
   EXPECT_THROW(Engine{setup}, std::invalid_argument);
   setup = tests::glass_setup({0.1, 0.1, 0.1}, 1e-5);
+  setup.contacts.normal = Linear{};
+  EXPECT_THROW(Engine{setup}, std::invalid_argument);  // without a stiffness
+  setup = tests::glass_setup({0.1, 0.1, 0.1}, 1e-5);
   setup.pairs.pop_back();
   tests::add_box_walls(setup);
   Engine engine(setup);
@@ -290,7 +307,7 @@ void run_outer_steps(Engine& engine, int count) {
   }
 }
 
-TEST(Engine, ContinuesBitForBitAfterACheckpoint) {
+void expect_to_continue_bit_for_bit(bool remembers) {
   // A busy bed: two materials and sizes, friction, rolling resistance at its cap, a periodic axis, an open top that
   // some leave through, more cells than there may be for so few particles: the canonical order, the cell grid and the
   // sums all differ from those of a fresh start.
@@ -307,6 +324,7 @@ TEST(Engine, ContinuesBitForBitAfterACheckpoint) {
   tests::add_box_walls(setup);
   setup.walls.push_back({"partition", {0.02, 0, 0}, {-1, 0, 0}, {}, 1});
   setup.walls.push_back({"floor", {0, 0, 0}, {0, 0, 1}, {}, 1});
+  if (remembers) tests::let_contacts_remember(setup);
   std::vector<Real> radii(150);
   for (std::size_t p = 0; p < 150; ++p) radii[p] = p % 4 == 0 ? 0.0015 : 0.0009;
   const auto centres = tests::scatter({{0.002, 0.0015, 0.002}, {0.018, 0.0135, 0.018}}, radii, 0, 51);
@@ -345,6 +363,9 @@ TEST(Engine, ContinuesBitForBitAfterACheckpoint) {
   run_outer_steps(without, 300);
   EXPECT_FALSE(state_of(straight) == state_of(without));
 }
+
+TEST(Engine, ContinuesBitForBitAfterACheckpoint) { expect_to_continue_bit_for_bit(false); }
+TEST(Engine, ContinuesBitForBitWithLawsThatRemember) { expect_to_continue_bit_for_bit(true); }
 
 TEST(Engine, ResortingKeepsWhatBelongsToAParticle) {
   // Chains of three that are squeezed together while they fly, each at its own speed. The one in the middle has two

@@ -229,8 +229,8 @@ TEST(Bed, UndampedGasKeepsItsEnergy) {
 }
 
 /// A bed with everything in it that could depend on threads: two materials and sizes, walls, a periodic axis, an open
-/// top, re-sorts and many list builds. Returns a hash (FNV-1a) of every bit of its state.
-std::uint64_t run_busy_bed() {
+/// top, re-sorts and many list builds; with laws that remember or not. Returns a hash (FNV-1a) of every bit of its state.
+std::uint64_t run_busy_bed(bool remembers) {
   auto setup = glass_setup({0.05, 0.03, 0.05}, 5e-6, 0.8, 0.3, 0.02);
   setup.materials.push_back({"heavy", 8000, 2e7, 0.3, false});
   setup.pairs.insert(setup.pairs.end(),
@@ -239,6 +239,7 @@ std::uint64_t run_busy_bed() {
   setup.domain.open_max.z = 1;
   setup.gravity = {0, 1, -300};
   tests::add_box_walls(setup);
+  if (remembers) tests::let_contacts_remember(setup);
   std::vector<Real> radii(900);
   for (std::size_t p = 0; p < radii.size(); ++p) radii[p] = p % 4 == 0 ? 0.0015 : 0.001;
   const auto centres = fill_region(Box{{0, 0, 0}, {0.05, 0.03, 0.05}}, FillPattern::random, radii, 81);
@@ -296,8 +297,9 @@ std::string output_of(const std::string& command) {
 TEST(Bed, IsTheSameBitForBitWithAnyNumberOfThreads) {
   // The number of threads is set when a process starts: this test runs its own executable as a child for each.
   if (std::getenv("PELLICLE_BUSY_BED") != nullptr) {
-    std::printf("\nbusy bed: %d threads %016llx\n", Host().concurrency(),
-                static_cast<unsigned long long>(run_busy_bed()));
+    std::printf("\nbusy bed: %d threads %016llx %016llx\n", Host().concurrency(),
+                static_cast<unsigned long long>(run_busy_bed(false)),
+                static_cast<unsigned long long>(run_busy_bed(true)));
     return;
   }
   std::array<char, 4096> path{};

@@ -1,0 +1,173 @@
+#include "dem/contact_history.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "dem/engine_arrays.hpp"
+
+namespace pellicle::dem {
+namespace {
+
+/// Lengths of the packed rows, summed up to offsets; returns how many contacts are held.
+std::int32_t find_offsets(const NeighbourList& list, const DeviceArray<bool>& held,
+                          const DeviceArray<std::int32_t>& offset) {
+  const Index count = list.count;
+  const auto row = list.offset;
+  Kokkos::parallel_for(
+      "dem::contact_history::count_held", DeviceRange(0, count), KOKKOS_LAMBDA(const Index p) {
+        std::int32_t found = 0;
+        for (std::int32_t slot = row(p); slot < row(p + 1); ++slot) found += held(slot) ? 1 : 0;
+        offset(p) = found;
+      });
+  std::int32_t total = 0;
+  Kokkos::parallel_scan(
+      "dem::contact_history::offsets", DeviceRange(0, count + 1),
+      KOKKOS_LAMBDA(const Index p, std::int32_t& sum, const bool final) {
+        const std::int32_t length = p < count ? offset(p) : 0;
+        if (final) offset(p) = sum;
+        sum += length;
+      },
+      total);
+  return total;
+}
+
+/// Copies held springs into their packed rows.
+struct PackRows {
+  int springs;
+  NeighbourList list;
+  SpringSlots slots;
+  DeviceArray<std::int32_t> offset, partner, row;
+  DeviceArray<Vec3> spring;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
+    row(p) = p;
+    std::int32_t entry = offset(p);
+    for (std::int32_t slot = list.offset(p); slot < list.offset(p + 1); ++slot) {
+      if (!slots.held(slot)) continue;
+      partner(entry) = list.partner(slot);
+      for (int s = 0; s < springs; ++s) spring(entry * springs + s) = slots.at(springs, slot)[s];
+      ++entry;
+    }
+  }
+};
+
+/// Finds each slot's springs in the packed row of its particle.
+struct UnpackRows {
+  int springs;
+  Index particles;  ///< that have a row or none; later ones have none
+  NeighbourList list;
+  SpringSlots slots;
+  DeviceArray<std::int32_t> offset, partner, row;
+  DeviceArray<Vec3> spring;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
+    const std::int32_t from = p < particles ? row(p) : -1;
+    const std::int32_t begin = from < 0 ? 0 : offset(from);
+    const std::int32_t end = from < 0 ? 0 : offset(from + 1);
+    for (std::int32_t slot = list.offset(p); slot < list.offset(p + 1); ++slot) {
+      const std::int32_t q = list.partner(slot);
+      std::int32_t entry = begin;
+      while (entry < end && partner(entry) != q) ++entry;
+      slots.held(slot) = entry < end;
+      if (entry == end) continue;
+      for (int s = 0; s < springs; ++s) slots.at(springs, slot)[s] = spring(entry * springs + s);
+    }
+  }
+};
+
+/// Where each of the old particles goes, -1 for those that leave.
+void invert_order(const DeviceArray<std::int32_t>& order, Index count,
+                  const DeviceArray<std::int32_t>& new_place) {
+  Kokkos::deep_copy(new_place, -1);
+  Kokkos::parallel_for(
+      "dem::contact_history::invert_order", DeviceRange(0, count),
+      KOKKOS_LAMBDA(const Index p) { new_place(order(p)) = p; });
+}
+
+}  // namespace
+
+void ContactHistory::pack(const NeighbourList& list) {
+  if (springs_ == 0 || place_ != Place::slots) return;
+  const auto n = static_cast<std::size_t>(list.count);
+  ensure_size(offset_, n + 1, "dem::contact_history::offset");
+  ensure_size(row_, n, "dem::contact_history::row");
+  const auto total = static_cast<std::size_t>(find_offsets(list, slots_.held, offset_));
+  ensure_size(partner_, total, "dem::contact_history::partner");
+  ensure_size(spring_, total * static_cast<std::size_t>(springs_), "dem::contact_history::packed_spring");
+  Kokkos::parallel_for("dem::contact_history::pack", DeviceRange(0, list.count),
+                       PackRows{springs_, list, slots_, offset_, partner_, row_, spring_});
+  packed_rows_ = particles_ = list.count;
+  place_ = Place::packed;
+}
+
+void ContactHistory::reorder(const DeviceArray<std::int32_t>& order, Index before, Index count) {
+  if (place_ != Place::packed) return;
+  ensure_size(new_place_, static_cast<std::size_t>(before), "dem::contact_history::new_place");
+  ensure_size(row_next_, static_cast<std::size_t>(count), "dem::contact_history::row_next");
+  invert_order(order, count, new_place_);
+  const auto row = row_;
+  const auto next = row_next_;
+  const auto new_place = new_place_;
+  const auto partner = partner_;
+  const Index known = particles_;
+  Kokkos::parallel_for(
+      "dem::contact_history::follow_rows", DeviceRange(0, count),
+      KOKKOS_LAMBDA(const Index p) { next(p) = order(p) < known ? row(order(p)) : -1; });
+  const auto offset = offset_;
+  Kokkos::parallel_for(
+      "dem::contact_history::follow_partners", DeviceRange(0, packed_rows_), KOKKOS_LAMBDA(const Index r) {
+        for (std::int32_t entry = offset(r); entry < offset(r + 1); ++entry) {
+          partner(entry) = partner(entry) < 0 ? -1 : new_place(partner(entry));
+        }
+      });
+  std::swap(row_, row_next_);
+  particles_ = count;
+}
+
+void ContactHistory::unpack(const NeighbourList& list) {
+  if (springs_ == 0) return;
+  const std::size_t entries = list.partner.extent(0);
+  ensure_size(slots_.held, entries, "dem::contact_history::held");
+  ensure_size(slots_.spring, entries * static_cast<std::size_t>(springs_), "dem::contact_history::spring");
+  const Index known = place_ == Place::packed ? particles_ : 0;
+  Kokkos::parallel_for("dem::contact_history::unpack", DeviceRange(0, list.count),
+                       UnpackRows{springs_, known, list, slots_, offset_, partner_, row_, spring_});
+  place_ = Place::slots;
+}
+
+void ContactHistory::save(core::CheckpointWriter& file) const {
+  if (springs_ == 0) return;
+  if (place_ == Place::slots) throw std::logic_error("springs are saved before they are packed");
+  const bool any = place_ == Place::packed;
+  file.write("dem/history/packed_rows", std::int64_t{any ? packed_rows_ : 0});
+  file.write("dem/history/particles", std::int64_t{any ? particles_ : 0});
+  if (!any) return;
+  std::int32_t total = 0;
+  Kokkos::deep_copy(total, Kokkos::subview(offset_, packed_rows_));
+  file.write("dem/history/offset", host_copy(offset_, packed_rows_ + 1));
+  file.write("dem/history/row", host_copy(row_, particles_));
+  file.write("dem/history/partner", host_copy(partner_, total));
+  file.write("dem/history/spring", host_copy(spring_, total * springs_));
+}
+
+void ContactHistory::load(const core::CheckpointReader& file) {
+  clear();
+  if (springs_ == 0) return;
+  packed_rows_ = static_cast<Index>(file.read_int64("dem/history/packed_rows"));
+  particles_ = static_cast<Index>(file.read_int64("dem/history/particles"));
+  if (packed_rows_ == 0) return;
+  const auto fill = [](auto& array, const auto& values, const char* label) {
+    using T = typename std::decay_t<decltype(array)>::value_type;
+    ensure_size(array, values.size(), label);
+    const Kokkos::View<const T*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(
+        values.data(), values.size());
+    Kokkos::deep_copy(Kokkos::subview(array, std::pair<std::size_t, std::size_t>(0, values.size())), host);
+  };
+  fill(offset_, file.read_int32s("dem/history/offset"), "dem::contact_history::offset_loaded");
+  fill(row_, file.read_int32s("dem/history/row"), "dem::contact_history::row_loaded");
+  fill(partner_, file.read_int32s("dem/history/partner"), "dem::contact_history::partner_loaded");
+  fill(spring_, file.read_vec3s("dem/history/spring"), "dem::contact_history::spring_loaded");
+  place_ = Place::packed;
+}
+
+}  // namespace pellicle::dem
