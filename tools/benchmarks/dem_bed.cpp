@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <Kokkos_Core.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -26,11 +27,10 @@ namespace {
 
 using namespace pellicle;
 
-constexpr Real bead_radius = 0.0015;    // [m]
-constexpr Real bead_density = 2505;     // [kg/m³]
-constexpr Real youngs_modulus = 1e7;    // [Pa]
-constexpr Real poisson_ratio = 0.22;    // [-]
-constexpr Real sliding_friction = 0.3;  // [-]
+constexpr Real bead_radius = 0.0015;  // [m]
+constexpr Real bead_density = 2505;   // [kg/m³]
+constexpr Real youngs_modulus = 1e7;  // [Pa]
+constexpr Real poisson_ratio = 0.22;  // [-]
 
 struct Options {
   std::string bed_file;
@@ -39,11 +39,14 @@ struct Options {
   std::vector<Real> size{0.145, 0.06, 0.3};  // [m]
   int steps = 280;
   int warm_up = 20;
-  int outer = 10;            // substeps an outer step
-  Real time_step = 1e-5;     // [s]
-  Real restitution = 0.97;   // [-]
-  Real gravity = 9.81;       // [m/s²]
-  Real relaxation_time = 0;  // of a drag on every bead [s]; 0: none
+  int outer = 10;                // substeps an outer step
+  Real time_step = 1e-5;         // [s]
+  Real restitution = 0.97;       // [-]
+  Real friction = 0.3;           // sliding, [-]
+  Real gravity = 9.81;           // [m/s²]
+  Real relaxation_time = 0;      // of a drag on every bead [s]; 0: none
+  bool attraction = false;       // where a contact ends; allowed in the codes this is compared with
+  std::vector<int> tiles{1, 1};  // copies of the bed side by side along x and y
 };
 
 /// A drag −m v/τ on every bead, with which a bed comes to rest sooner.
@@ -56,7 +59,8 @@ struct RestingDrag {
   }
 };
 
-std::vector<dem::ParticleSeed> read_bed(const std::string& file) {
+std::vector<dem::ParticleSeed> read_bed(const Options& options) {
+  const std::string& file = options.bed_file;
   std::ifstream in(file);
   if (!in) throw std::runtime_error("cannot read " + file);
   std::vector<dem::ParticleSeed> seeds;
@@ -74,6 +78,17 @@ std::vector<dem::ParticleSeed> read_bed(const std::string& file) {
     seeds.push_back(seed);
   }
   if (seeds.empty()) throw std::runtime_error(file + " has no line with a position");
+  const std::size_t count = seeds.size();
+  for (int i = 0; i < options.tiles[0]; ++i) {
+    for (int j = 0; j < options.tiles[1]; ++j) {
+      if (i == 0 && j == 0) continue;
+      for (std::size_t k = 0; k < count; ++k) {
+        dem::ParticleSeed copy = seeds[k];
+        copy.position += {i * options.size[0], j * options.size[1], 0};
+        seeds.push_back(copy);
+      }
+    }
+  }
   return seeds;
 }
 
@@ -102,14 +117,16 @@ void write_bed(const std::string& file, const dem::Particles& particles) {
 
 dem::EngineSetup make_setup(const Options& options) {
   dem::EngineSetup setup;
-  setup.domain.box = {{0, 0, 0}, {options.size[0], options.size[1], options.size[2]}};
+  setup.domain.box = {
+      {0, 0, 0}, {options.tiles[0] * options.size[0], options.tiles[1] * options.size[1], options.size[2]}};
   // The wall is as soft as the beads: so are the walls of the codes this is compared with.
   setup.materials = {{"glass", bead_density, youngs_modulus, poisson_ratio, false}};
-  setup.pairs = {{0, 0, options.restitution, sliding_friction, 0}};
+  setup.pairs = {{0, 0, options.restitution, options.friction, 0}};
   const int law = core::find_model(core::model_list<dem::TangentialLaw>(), options.tangential);
   if (law < 0) throw std::runtime_error("no tangential law " + options.tangential);
   setup.contacts.tangential = core::make_model<dem::TangentialLaw>(law);
   setup.contacts.rolling = dem::NoRolling{};
+  setup.contacts.clip = !options.attraction;
   setup.gravity = {0, 0, -options.gravity};
   setup.time_step = options.time_step;
   for (int axis = 0; axis < 3; ++axis) {
@@ -123,8 +140,7 @@ dem::EngineSetup make_setup(const Options& options) {
   return setup;
 }
 
-Options read_options(CLI::App& app, int argc, char** argv) {
-  Options options;
+void add_options(CLI::App& app, Options& options) {
   app.add_option("--bed", options.bed_file, "one bead a line: x y z [vx vy vz [wx wy wz]]")->required();
   app.add_option("--size", options.size, "of the box from the origin [m]")->expected(3);
   app.add_option("--tangential", options.tangential, "contact law");
@@ -133,11 +149,12 @@ Options read_options(CLI::App& app, int argc, char** argv) {
   app.add_option("--outer", options.outer, "steps an outer step, before which memory may be sorted");
   app.add_option("--time-step", options.time_step, "[s]");
   app.add_option("--restitution", options.restitution, "[-]");
+  app.add_option("--friction", options.friction, "sliding [-]");
+  app.add_flag("--attraction", options.attraction, "let damping pull two beads together as they part");
   app.add_option("--gravity", options.gravity, "downwards [m/s²]");
   app.add_option("--relaxation-time", options.relaxation_time, "of a drag on every bead [s]; 0: no drag");
+  app.add_option("--tiles", options.tiles, "copies of the bed side by side along x and y")->expected(2);
   app.add_option("--output", options.output_file, "where the bed is written after the timed steps");
-  app.parse(argc, argv);
-  return options;
 }
 
 double wall_now() {
@@ -149,7 +166,7 @@ double cpu_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; } 
 class Bed {
  public:
   explicit Bed(const Options& options) : options_(options), engine_(make_setup(options)) {
-    engine_.set_particles(read_bed(options.bed_file));
+    engine_.set_particles(read_bed(options));
   }
 
   void run(int steps) {
@@ -210,19 +227,23 @@ void run_benchmark(const Options& options) {
       neighbours_per_particle, totals.kinetic_energy, contacts, neighbours, motion);
 }
 
+int run(int argc, char** argv) {
+  CLI::App app{"Runs a bed of glass beads and tells how fast"};
+  Options options;
+  add_options(app, options);
+  CLI11_PARSE(app, argc, argv);
+  const Kokkos::ScopeGuard kokkos(argc, argv);
+  run_benchmark(options);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Runs a bed of glass beads and tells how fast"};
   try {
-    const Options options = read_options(app, argc, argv);
-    const Kokkos::ScopeGuard kokkos(argc, argv);
-    run_benchmark(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
+    return run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "dem_bed: %s\n", error.what());
     return 1;
   }
-  return 0;
 }

@@ -1,6 +1,7 @@
 """The beds of tools/benchmarks/dem_vs_peers: made once, kept as text, one bead a line (x y z [vx vy vz [wx wy wz]])."""
 
 import gzip
+import json
 import pathlib
 import subprocess
 
@@ -9,7 +10,8 @@ import numpy as np
 COUNT = 50000
 SIZE = (0.145, 0.06, 0.3)  # of the box [m]
 DIAMETER, DENSITY = 3e-3, 2505.0
-AGITATION = 1.5  # root mean square speed [m/s]
+AGITATION = 1.0  # root mean square speed of the agitated beads [m/s]
+MIXING = 2000  # steps without loss that turn a lattice into a gas: about thirty collisions a bead
 
 # Stages of settling: restitution, relaxation time of a drag [s] (0: none), step [s], steps.
 STAGES = ((0.5, 0.05, 2e-5, 7000), (0.97, 0.01, 1e-5, 6000), (0.97, 0, 1e-5, 3000))
@@ -31,7 +33,10 @@ def lattice(pitch):
 
 
 def write(path, rows):
-    np.savetxt(path, rows, fmt="%.12g")
+    """To a name of its own first: an interrupted run must not leave half a bed behind."""
+    part = path.with_suffix(".writing")
+    np.savetxt(part, rows, fmt="%.12g")
+    part.replace(path)
 
 
 def read(path):
@@ -46,24 +51,53 @@ def read(path):
     return np.array([row for row in rows if len(row) >= 3])
 
 
-def make_agitated(path):
+def run(program, bed, output, **options):
+    """Runs dem_bed; what it prints."""
+    command = [program, "--bed", bed, "--output", output, "--size", *SIZE]
+    for name, value in options.items():
+        command += ["--" + name.replace("_", "-"), value]
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SystemExit(f"could not make a bed: {(done.stdout + done.stderr).strip()}")
+    return json.loads(done.stdout.strip().splitlines()[-1])
+
+
+def agitate(path, program, say):
+    """A granular gas: random velocities on a lattice, then collisions that lose nothing until it is mixed."""
+    say(f"mixing a gas of {COUNT} beads, once")
+    work = path.with_suffix(".part")
     positions = lattice((np.prod(SIZE) / COUNT) ** (1 / 3))
     velocities = np.random.default_rng(54321).normal(0, AGITATION / np.sqrt(3), positions.shape)
-    write(path, np.hstack([positions, velocities - velocities.mean(0)]))
+    write(work, np.hstack([positions, velocities]))
+    found = run(program, work, work, restitution=1, friction=0, gravity=0, time_step=1e-5, warm_up=1, steps=MIXING)
+    rows = read(work)[:, :6]
+    rows[:, 3:] -= rows[:, 3:].mean(0)
+    # What overlaps hold back of the energy is given again.
+    rows[:, 3:] *= AGITATION / np.sqrt((rows[:, 3:] ** 2).sum(1).mean())
+    write(path, rows)
+    work.unlink()
+    say(f"  {found['contacts_per_particle_end']:.3f} contacts a bead")
 
 
 def settle(path, law, program, say):
+    say(f"settling {COUNT} beads with {law}, once")
     work = path.with_suffix(".part")
     write(work, lattice(3.2e-3))
     for restitution, relaxation, step, steps in STAGES:
-        command = [program, "--bed", work, "--output", work, "--size", *SIZE, "--tangential", law, "--restitution",
-                   restitution, "--relaxation-time", relaxation, "--time-step", step, "--warm-up", 1, "--steps", steps]
-        run = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False)
-        if run.returncode != 0:
-            raise SystemExit(f"could not settle a bed: {run.stderr.strip()}")
-        say(f"  {steps} steps of {step} s: {run.stdout.strip()}")
+        found = run(program, work, work, tangential=law, restitution=restitution, relaxation_time=relaxation,
+                    time_step=step, warm_up=1, steps=steps)
+        say(f"  {steps} steps of {step} s: {found['contacts_per_particle_end']:.3f} contacts a bead, kinetic energy "
+            f"{found['kinetic_energy']:.3g} J")
     write(path, read(work)[:, :3])  # at rest: what little speed is left is taken away
     work.unlink()
+
+
+def cut(bed, count, path):
+    """The `count` beads of a bed with the least x, and the length of the box that holds them [m]."""
+    rows = read(bed)
+    rows = rows[np.argsort(rows[:, 0], kind="stable")][:count]
+    write(path, rows)
+    return float(rows[:, 0].max() + DIAMETER / 2)
 
 
 def make(kind, given, cache, program, say):
@@ -82,9 +116,8 @@ def make(kind, given, cache, program, say):
     if path.exists():
         return path
     if kind == "agitated":
-        make_agitated(path)
+        agitate(path, program, say)
     else:
-        say(f"settling {COUNT} beads with {LAWS[kind]}, once")
         settle(path, LAWS[kind], program, say)
     return path
 

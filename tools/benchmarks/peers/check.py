@@ -1,4 +1,4 @@
-"""Do the codes compute the same? Compares, bead by bead, accelerations at the start and paths over a few hundred steps."""
+"""Do the codes compute the same? Compares, bead by bead, accelerations at the start and paths over a few steps."""
 
 import numpy as np
 
@@ -52,46 +52,63 @@ def rms(vectors):
     return float(np.sqrt((vectors**2).sum(1).mean()))
 
 
-def compare_codes(cases, make_job, codes_of, run, say):
-    """Runs every code on every case for as many steps as are timed. Returns one record a code and case."""
+# Key of a record, heading, format.
+COLUMNS = (
+    ("code", "code", "{}"),
+    ("contacts_start", "contacts at start", "{:.4f}"),
+    ("contacts_end", "at end", "{:.4f}"),
+    ("mean_overlap_start", "mean overlap at start [um]", "{:.4f}"),
+    ("mean_overlap_end", "at end [um]", "{:.4f}"),
+    ("largest_overlap_end", "largest at end [um]", "{:.3f}"),
+    ("rms_speed_end", "rms speed at end [m/s]", "{:.6g}"),
+    ("rms_spin_end", "rms spin at end [rad/s]", "{:.6g}"),
+    ("acceleration_difference", "acceleration at start differs by", "{:.2e}"),
+    ("turn_difference", "angular acceleration", "{:.2e}"),
+    ("moved", "displacement, rms [um]", "{:.5g}"),
+    ("moved_difference", "differs by", "{:.2e}"),
+    ("spin_difference", "spin at end", "{:.2e}"),
+)
+
+
+def compare_codes(cases, steps, make_job, codes_of, run, say):
+    """Runs every code on every case for a few steps. Returns one record a code and case."""
     records = []
     for case in cases:
-        say(f"\nSame physics? {case}, from the given state over the steps that are timed. Acceleration at the start "
-            "and displacement at the end against LIGGGHTS, rms; overlaps by a program of its own.")
-        say("| code | contacts at start | at end | mean overlap at start [um] | at end [um] | largest at end [um] "
-            "| kinetic energy at end [J] | acceleration differs by | spin's | displacement | differs by |")
-        say("|" + "---|" * 11)
+        say(f"\nSame physics? {case}, {steps} steps from the given state. Differences are rms over the beads, relative "
+            "to LIGGGHTS's rms. Overlaps and contacts are counted here.")
+        say("| " + " | ".join(heading for _, heading, _ in COLUMNS) + " |")
+        say("|" + "---|" * len(COLUMNS))
         reference = None
-        codes = codes_of(case)
-        for code in sorted(codes, key=lambda c: c != "liggghts"):
-            record, reference = compare_one(code, case, make_job, run, reference)
+        for code in sorted(codes_of(case), key=lambda c: c != "liggghts"):
+            job = dict(make_job(code, case), dump=True, warm=1, steps=steps - 1)
+            record, state = describe(job, run)
+            reference = reference or state
+            record.update(compare(state, reference))
             records.append(record)
-            say("| " + " | ".join(f"{v:.5g}" if isinstance(v, float) else str(v)
-                                  for k, v in record.items() if k != "case") + " |")
+            say("| " + " | ".join(form.format(record[key]) for key, _, form in COLUMNS) + " |")
     return records
 
 
-def compare_one(code, case, make_job, run, reference):
-    job = dict(make_job(code, case), dump=True)
+def describe(job, run):
+    """What is told of a run by itself, and what is compared."""
     result = run(job)
     start, end = result["start"], result["end"]
-    if code == "pellicle":
-        # Accelerations are kept of the last step: those of the start take a run of one step.
-        start = run(dict(job, warm=1, steps=0))["end"]
+    if start is None:
+        # This project's program keeps accelerations of the last step: those of the start take a run of one step.
+        start = run(dict(job, steps=0))["end"]
         start[:, :3] = beds.read(job["bed"])[:, :3]
     before, after = overlaps(start[:, :3]), overlaps(end[:, :3])
-    energy = 0.5 * MASS * (end[:, 3:6] ** 2).sum() + 0.5 * INERTIA * (end[:, 6:9] ** 2).sum()
-    moved = end[:, :3] - start[:, :3]
-    record = {"code": code, "case": case, "contacts_start": 2 * len(before) / len(start),
-              "contacts_end": 2 * len(after) / len(end), "mean_overlap_start_um": 1e6 * float(before.mean()) if len(before) else 0.0,
-              "mean_overlap_end_um": 1e6 * float(after.mean()) if len(after) else 0.0, "largest_overlap_end_um": 1e6 * float(after.max()) if len(after) else 0.0,
-              "kinetic_energy_end": float(energy)}
-    if reference is None:
-        reference = {"acceleration": start[:, 9:12], "turn": start[:, 12:15], "moved": moved}
-    scale = rms(reference["acceleration"]) or 1.0
-    turn_scale = rms(reference["turn"]) or 1.0
-    record.update(acceleration_difference=rms(start[:, 9:12] - reference["acceleration"]) / scale,
-                  turn_difference=rms(start[:, 12:15] - reference["turn"]) / turn_scale,
-                  displacement_um=1e6 * rms(moved),
-                  displacement_difference_um=1e6 * rms(moved - reference["moved"]))
-    return record, reference
+    record = {"code": job["code"], "case": job["case"], "steps": job["warm"] + job["steps"],
+              "contacts_start": 2 * len(before) / len(start), "contacts_end": 2 * len(after) / len(end),
+              "mean_overlap_start": 1e6 * float(before.mean()), "mean_overlap_end": 1e6 * float(after.mean()),
+              "largest_overlap_end": 1e6 * float(after.max()), "rms_speed_end": rms(end[:, 3:6]),
+              "rms_spin_end": rms(end[:, 6:9])}
+    state = {"acceleration": start[:, 9:12], "turn": start[:, 12:15], "moved": end[:, :3] - start[:, :3],
+             "spin": end[:, 6:9]}
+    return record, state
+
+
+def compare(state, reference):
+    differences = {f"{name}_difference": rms(state[name] - reference[name]) / (rms(reference[name]) or 1.0)
+                   for name in state}
+    return {**differences, "moved": 1e6 * rms(state["moved"])}
