@@ -85,7 +85,7 @@ inline std::vector<ImpactState> run_impacts(const ImpactSeries& series,
   setup.contacts = series.laws;
   setup.contacts.overlap_limit = 1;
   setup.time_step = step;
-  if (!pair) setup.walls = {{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
+  if (!pair) setup.walls = {dem::PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
   std::vector<dem::ParticleSeed> seeds;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const ImpactState& b = before[i];

@@ -1,4 +1,4 @@
-// The benchmark series of Chung & Ooi (Granul. Matter 13 (2011) 643): impacts of one or two spheres.
+// The benchmark series of Chung & Ooi (Granul. Matter 13 (2011) 643), tests 1 to 3: normal impacts.
 //
 // Their figures were read off by others (KratosMultiphysics, DEMApplication, benchmarks 1 to 8); a point read off is
 // good to about 1 % of the axis. Closed forms are held to far less.
@@ -26,8 +26,6 @@ constexpr Solid magnesium{4e10, 0.35, 1800};
 constexpr Solid aluminium_oxide{3.8e11, 0.23, 4000};
 constexpr Solid cast_iron{1e11, 0.25, 7000};
 
-Real degrees(Real radians) { return radians * 180 / M_PI; }
-
 /// Overlap and force through an elastic normal impact.
 struct History {
   std::vector<double> time, overlap, force;
@@ -46,7 +44,7 @@ History follow_normal_impact(const Solid& solid, Real radius, Real speed_each, b
                      {"floor", 0, 0, 0, true}};
   setup.pairs = {{0, 0, 1, 0, 0}, {0, 1, 1, 0, 0}};
   setup.time_step = step;
-  if (!pair) setup.walls = {{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
+  if (!pair) setup.walls = {PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
   const Real gap = 1.5 * speed * step;
   const Real height = pair ? 3 * radius + gap : radius + gap;
   std::vector<ParticleSeed> seeds = {
@@ -157,72 +155,13 @@ TEST(ChungOoi, Test3RestitutionOut) {
     for (const Real e : {0.2, 0.4, 0.6, 0.8, 1.0}) {
       ImpactSeries series{solid, 0.0025};
       series.restitution = e;
-      series.steps_per_contact = 4000;
+      series.steps_per_contact = 2000;
       const auto after = run_impacts(series, {{{0, 0, -3.9}, {}, {}}});
       deviation = std::max(deviation, std::abs(after[0].velocity.z / 3.9 - e));
     }
   }
-  expect_small(
-      "test 3: restitution out minus in, e 0.2 to 1, two solids", deviation, 2e-4,
-      "scatter 0.015 at 20 steps a contact falls with Δt^1.25: 2e-5 at 4000, ten times allowed at e 0.2");
-}
-
-/// Test 4: aluminium oxide, R 2.5 mm, 3.9 m/s at an angle to the normal, µ 0.092, e 0.98.
-struct ObliqueResult {
-  Real tangential_restitution, spin, rebound_angle;
-};
-constexpr Real oblique_speed = 3.9, oblique_radius = 0.0025, oblique_friction = 0.092,
-               oblique_restitution = 0.98;
-
-std::vector<ObliqueResult> run_test4(const ContactOptions& laws, const std::vector<Real>& angles) {
-  ImpactSeries series{aluminium_oxide, oblique_radius};
-  series.restitution = oblique_restitution;
-  series.sliding_friction = oblique_friction;
-  series.laws = laws;
-  std::vector<ImpactState> before;
-  for (const Real angle : angles) {
-    const Real a = angle * M_PI / 180;
-    before.push_back({{oblique_speed * std::sin(a), 0, -oblique_speed * std::cos(a)}, {}, {}});
-  }
-  std::vector<ObliqueResult> results;
-  const auto after = run_impacts(series, before);
-  for (std::size_t i = 0; i < angles.size(); ++i) {
-    const Vec3 v = after[i].velocity;
-    const Real w = after[i].spin.y;
-    EXPECT_EQ(v.y, 0);
-    EXPECT_EQ(after[i].spin.x, 0);
-    // Rebound angle: of the contact point's velocity to the normal; their spin counts the other way round.
-    results.push_back({v.x / before[i].velocity.x, -w, degrees(std::atan2(v.x - oblique_radius * w, v.z))});
-  }
-  return results;
-}
-
-/// Deviations from a sphere that slides throughout: e_t = 1 − µ(1 + e)/tan θ, R ω = −(5/2) µ(1 + e) v_n.
-void check_sliding_branch(const ContactOptions& laws, const std::string& name,
-                          const std::vector<Real>& angles) {
-  const auto got = run_test4(laws, angles);
-  Real restitution = 0, spin = 0, angle = 0;
-  for (std::size_t i = 0; i < angles.size(); ++i) {
-    const Real a = angles[i] * M_PI / 180;
-    const Real impulse = oblique_friction * (1 + oblique_restitution);
-    const Real e_t = 1 - impulse / std::tan(a);
-    const Real w = -2.5 * impulse * oblique_speed * std::cos(a) / oblique_radius;
-    const Real recoil =
-        std::atan2(e_t * std::sin(a) - 2.5 * impulse * std::cos(a), oblique_restitution * std::cos(a));
-    restitution = std::max(restitution, std::abs(got[i].tangential_restitution - e_t));
-    spin = std::max(spin, std::abs(got[i].spin / w - 1));
-    angle = std::max(angle, std::abs(got[i].rebound_angle - degrees(recoil)));
-  }
-  expect_small("test 4, sliding branch, " + name + ": tangential restitution", restitution, 1e-5,
-               "friction impulse µ(1+e) m v_n whatever the law; e scatters by 0.001 (20/1000)^1.25 = 8e-6");
-  expect_small("test 4, sliding branch, " + name + ": spin, relative", spin, 0.0033,
-               "the lever is R − δ: up to δ/R = 0.0032 shorter than in the rigid closed form");
-  expect_small("test 4, sliding branch, " + name + ": rebound angle [deg]", angle, 0.2,
-               "from the spin's deviation of 0.3 %, 2 m/s of 600 rad/s × R, times 180/π");
-}
-
-TEST(ChungOoi, Test4SlidingBranchWithoutHistory) {
-  check_sliding_branch(ContactOptions{}, "viscous_coulomb", {35, 40, 45, 50, 60, 70, 80, 85});
+  expect_small("test 3: restitution out minus in, e 0.2 to 1, two solids", deviation, 5e-5,
+               "scatter 0.015 at 20 steps a contact, e 0.3, falls with Δt^1.25: 5e-5 at 2000 steps");
 }
 
 }  // namespace
