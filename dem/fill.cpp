@@ -1,56 +1,34 @@
 #include "dem/fill.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "core/random.hpp"
+#include "dem/fill_relaxation.hpp"
 
 namespace pellicle::dem {
 namespace {
 
-Box bounds(const FillRegion& region) {
-  if (const auto* box = std::get_if<Box>(&region)) return *box;
-  const auto& c = std::get<CylinderRegion>(region);
-  Box box;
-  const Vec3 axis = (1 / norm(c.to - c.from)) * (c.to - c.from);
-  for (int a = 0; a < 3; ++a) {
-    const Real reach = c.radius * std::sqrt(std::max(0.0, 1 - axis[a] * axis[a]));
-    box.min[a] = std::min(c.from[a], c.to[a]) - reach;
-    box.max[a] = std::max(c.from[a], c.to[a]) + reach;
-  }
-  return box;
-}
-
-/// Of a radius; a slot of exactly one diameter must hold a sphere whatever the last bit of its coordinates.
-constexpr Real fit_tolerance = 1e-9;
-
-bool fits(const FillRegion& region, const Vec3& x, Real sphere_radius) {
-  const Real radius = (1 - fit_tolerance) * sphere_radius;
-  if (const auto* box = std::get_if<Box>(&region)) {
-    for (int a = 0; a < 3; ++a) {
-      if (x[a] < box->min[a] + radius || x[a] > box->max[a] - radius) return false;
-    }
-    return true;
-  }
-  const auto& c = std::get<CylinderRegion>(region);
-  const Real length = norm(c.to - c.from);
-  const Vec3 axis = (1 / length) * (c.to - c.from);
-  const Real along = dot(x - c.from, axis);
-  if (along < radius || along > length - radius) return false;
-  return norm(x - c.from - along * axis) <= c.radius - radius;
-}
+/// Largest solids fraction that spheres are placed at one by one; above, random sequential addition gets slow and
+/// ends at 0.30 to 0.38.
+constexpr Real one_by_one_limit = 0.30;
+constexpr Real fit_tolerance = 1e-9;  // of a radius
 
 /// Cells as wide as the largest sphere, each with a chain of the spheres whose centre is in it.
 class OverlapGrid {
  public:
-  OverlapGrid(const Box& box, Real largest_diameter) : box_(box), size_(largest_diameter) {
-    for (int a = 0; a < 3; ++a) {
-      cells_[a] =
-          std::max(Index{1}, static_cast<Index>(std::min((box.max[a] - box.min[a]) / size_, 1000.0)) + 1);
+  OverlapGrid(const Box& box, Real largest_diameter, std::size_t spheres)
+      : box_(box), width_(largest_diameter) {
+    // Wider cells where there would be many more of them than spheres.
+    const Real most = 8 * static_cast<Real>(spheres) + 4096;
+    for (;; width_ *= 1.26) {
+      Real count = 1;
+      for (int a = 0; a < 3; ++a) count *= std::floor((box.max[a] - box.min[a]) / width_) + 1;
+      if (count <= most) break;
     }
-    // A coarser grid than asked for where a box has more than 1000 cells along an axis.
-    for (int a = 0; a < 3; ++a) width_[a] = std::max(size_, (box.max[a] - box.min[a]) / cells_[a]);
+    for (int a = 0; a < 3; ++a) cells_[a] = static_cast<Index>((box.max[a] - box.min[a]) / width_) + 1;
     head_.assign(static_cast<std::size_t>(cells_.x) * static_cast<std::size_t>(cells_.y) *
                      static_cast<std::size_t>(cells_.z),
                  -1);
@@ -83,8 +61,8 @@ class OverlapGrid {
   Index3 cell(const Vec3& x) const {
     Index3 c;
     for (int a = 0; a < 3; ++a) {
-      c[a] = std::clamp(static_cast<Index>(std::floor((x[a] - box_.min[a]) / width_[a])), Index{0},
-                        cells_[a] - 1);
+      c[a] =
+          std::clamp(static_cast<Index>(std::floor((x[a] - box_.min[a]) / width_)), Index{0}, cells_[a] - 1);
     }
     return c;
   }
@@ -96,45 +74,81 @@ class OverlapGrid {
   }
 
   Box box_;
-  Real size_;
+  Real width_;
   Index3 cells_{1, 1, 1};
-  Vec3 width_{};
   std::vector<Index> head_, next_;
   std::vector<PlacedSphere> spheres_;
 };
 
-std::vector<Vec3> fill_lattice(const FillRegion& region, const std::vector<Real>& radii, Real largest,
+/// Sites along one axis, the first and the distance between two: as many as fit at least `pitch` apart.
+struct SiteRow {
+  Real first = 0, pitch = 0;
+  Index count = 0;
+};
+
+/// Centres of spheres of radius `largest` in a box, one row an axis; upwards they start at the floor, across they are
+/// spread over the width so that the layers stand free of the sides.
+SiteRow row_of_lattice(const Box& box, int axis, Real largest, Real pitch) {
+  const Real room = box.max[axis] - box.min[axis] - 2 * largest;
+  if (room < -fit_tolerance * largest) return {};
+  const auto count = static_cast<Index>(room / pitch + 0.25 * fit_tolerance) + 1;
+  const Real slack = std::max(0.0, room - pitch * (count - 1));
+  return {box.min[axis] + largest + (axis == 2 ? std::min(0.0005 * largest, slack) : 0.5 * slack), pitch,
+          count};
+}
+
+constexpr Real lattice_pitch = 1.0005;  // of the largest diameter: neighbours do not touch
+
+std::vector<Vec3> fill_lattice(const Room& room, const Box& box, const std::vector<Real>& radii, Real largest,
                                const OverlapGrid& present) {
   std::vector<Vec3> centres;
-  const Box box = bounds(region);
-  const Real pitch = 2.001 * largest;
-  Index3 n;
-  Vec3 first;
-  for (int a = 0; a < 3; ++a) {
-    const Real room = box.max[a] - box.min[a] - 2 * largest;
-    if (room < -fit_tolerance * largest) return centres;
-    n[a] = static_cast<Index>(room / pitch + 0.25 * fit_tolerance) + 1;
-    // Spread over the width so that the layers stand free of the sides; upwards they start at the floor.
-    const Real slack = std::max(0.0, room - pitch * (n[a] - 1));
-    first[a] = box.min[a] + largest + (a == 2 ? std::min(0.0005 * largest, slack) : 0.5 * slack);
-  }
-  for (Index k = 0; k < n.z; ++k) {
-    for (Index j = 0; j < n.y; ++j) {
-      for (Index i = 0; i < n.x; ++i) {
+  const Real pitch = 2 * lattice_pitch * largest;
+  const SiteRow x = row_of_lattice(box, 0, largest, pitch), y = row_of_lattice(box, 1, largest, pitch),
+                z = row_of_lattice(box, 2, largest, pitch);
+  if (x.count == 0 || y.count == 0) return centres;
+  for (Index k = 0; k < z.count; ++k) {
+    for (Index j = 0; j < y.count; ++j) {
+      for (Index i = 0; i < x.count; ++i) {
         if (centres.size() == radii.size()) return centres;
-        const Vec3 x{first.x + pitch * i, first.y + pitch * j, first.z + pitch * k};
-        if (fits(region, x, radii[centres.size()]) && present.free(x, radii[centres.size()]))
-          centres.push_back(x);
+        const Vec3 site{x.first + pitch * i, y.first + pitch * j, z.first + pitch * k};
+        const Real radius = radii[centres.size()];
+        if (room.holds(site, radius) && present.free(site, radius)) centres.push_back(site);
       }
     }
   }
   return centres;
 }
 
-std::vector<Vec3> fill_random(const FillRegion& region, const std::vector<Real>& radii, std::uint64_t seed,
-                              OverlapGrid& grid) {
+/// Layers of rows, each row in the gaps of the one before, each layer over the gaps of the one below (hexagonal close
+/// packing), the rows along x.
+std::vector<Vec3> fill_hexagonal(const Room& room, const Box& box, const std::vector<Real>& radii,
+                                 Real largest, const OverlapGrid& present) {
+  std::vector<Vec3> centres;
+  const Real pitch = 2 * lattice_pitch * largest;
+  const SiteRow x = row_of_lattice(box, 0, largest, pitch),
+                y = row_of_lattice(box, 1, largest, pitch * std::sqrt(3.0) / 2),
+                z = row_of_lattice(box, 2, largest, pitch * std::sqrt(2.0 / 3));
+  if (x.count == 0 || y.count == 0) return centres;
+  // Odd rows and layers stand half a pitch, or a third of a row, further: there the last site may not fit.
+  const Real left = box.min.x + largest, front = box.min.y + largest;
+  for (Index k = 0; k < z.count; ++k) {
+    for (Index j = 0; j < y.count; ++j) {
+      for (Index i = 0; i < x.count; ++i) {
+        if (centres.size() == radii.size()) return centres;
+        const Vec3 site{left + pitch * (i + 0.5 * ((j + k) % 2)), front + y.pitch * (j + (k % 2) / 3.0),
+                        z.first + z.pitch * k};
+        const Real radius = radii[centres.size()];
+        if (room.holds(site, radius) && present.free(site, radius)) centres.push_back(site);
+      }
+    }
+  }
+  return centres;
+}
+
+/// Random sequential addition.
+std::vector<Vec3> fill_one_by_one(const Room& room, const Box& box, const std::vector<Real>& radii,
+                                  std::uint64_t seed, OverlapGrid& grid) {
   constexpr int tries = 20000;  // a sphere; at 0.35 solids about one try in a thousand finds a gap
-  const Box box = bounds(region);
   std::vector<Vec3> centres(radii.size());
   // Large ones first: small ones still find gaps when the region is nearly full.
   std::vector<std::size_t> order(radii.size());
@@ -151,7 +165,7 @@ std::vector<Vec3> fill_random(const FillRegion& region, const std::vector<Real>&
       for (int a = 0; a < 3; ++a) {
         x[a] = box.min[a] + radius + share[a] * (box.max[a] - box.min[a] - 2 * radius);
       }
-      if (!fits(region, x, radius) || !grid.free(x, radius)) continue;
+      if (!room.holds(x, radius) || !grid.free(x, radius)) continue;
       grid.add({x, radius});
       centres[order[placed]] = x;
       found = true;
@@ -164,27 +178,85 @@ std::vector<Vec3> fill_random(const FillRegion& region, const std::vector<Real>&
   return centres;
 }
 
+/// Sites of a cubic lattice spread over the region, at least as many as asked for: the widest pitch that has them.
+std::vector<Vec3> spread_sites(const Room& room, const FillRegion& region, std::size_t count,
+                               Real mean_radius, const OverlapGrid& present) {
+  const Box box = region_bounds(region);
+  std::vector<Vec3> sites;
+  Real pitch = std::cbrt(region_volume(region) / static_cast<Real>(count));
+  for (; sites.size() < count && pitch > 0.5 * mean_radius; pitch *= 0.99) {
+    sites.clear();
+    std::array<SiteRow, 3> rows;
+    for (int a = 0; a < 3; ++a) {
+      const Real width = std::max(0.0, box.max[a] - box.min[a] - 2 * mean_radius);
+      const auto gaps = static_cast<Index>(width / pitch);
+      rows[static_cast<std::size_t>(a)] = {
+          gaps == 0 ? 0.5 * (box.min[a] + box.max[a]) : box.min[a] + mean_radius,
+          gaps == 0 ? 0 : width / gaps, gaps + 1};
+    }
+    const auto& [x, y, z] = rows;
+    for (Index k = 0; k < z.count; ++k) {
+      for (Index j = 0; j < y.count; ++j) {
+        for (Index i = 0; i < x.count; ++i) {
+          const Vec3 site{x.first + x.pitch * i, y.first + y.pitch * j, z.first + z.pitch * k};
+          Vec3 near = site;
+          if (!room.bring_inside(near, mean_radius)) return {};
+          if (norm(near - site) <= 0.5 * pitch && present.free(near, mean_radius)) sites.push_back(near);
+        }
+      }
+    }
+  }
+  return sites;
+}
+
+/// Random places in the cells of a lattice, moved apart until none overlaps.
+std::vector<Vec3> fill_densely(const Room& room, const FillRegion& region, const std::vector<Real>& radii,
+                               std::uint64_t seed, const std::vector<PlacedSphere>& present,
+                               const OverlapGrid& grid) {
+  constexpr int most_sweeps = 2000;
+  Real mean_radius = 0;
+  for (const Real r : radii) mean_radius += r / static_cast<Real>(radii.size());
+  std::vector<Vec3> sites = spread_sites(room, region, radii.size(), mean_radius, grid);
+  if (sites.size() < radii.size()) return {};
+  const Real jitter = std::cbrt(region_volume(region) / static_cast<Real>(radii.size()));
+  // Fisher-Yates: which site a sphere gets says nothing about its number or size, and those left over are anywhere.
+  for (std::size_t p = 0; p < radii.size(); ++p) {
+    const auto id = static_cast<std::int64_t>(p);
+    const Real share = core::random_uniform(seed, core::Purpose::fill_position, 0, id, 1);
+    std::swap(sites[p], sites[p + static_cast<std::size_t>(share * static_cast<Real>(sites.size() - p))]);
+    const Vec3 shift = core::random_uniform3(seed, core::Purpose::fill_position, 0, id, 1);
+    sites[p] += jitter * (shift - Vec3{0.5, 0.5, 0.5});
+  }
+  sites.resize(radii.size());
+  for (std::size_t p = 0; p < radii.size(); ++p) room.bring_inside(sites[p], radii[p]);
+  if (!relax_spheres(room, sites, radii, present, most_sweeps).clear) sites.clear();
+  return sites;
+}
+
 }  // namespace
 
 std::vector<Vec3> fill_region(const FillRegion& region, FillPattern pattern, const std::vector<Real>& radii,
                               std::uint64_t seed, const std::vector<PlacedSphere>& present) {
   if (radii.empty()) return {};
-  Real largest = *std::max_element(radii.begin(), radii.end());
+  const Room room(region);
+  const Box box = region_bounds(region);
+  const Real largest = *std::max_element(radii.begin(), radii.end());
   Real reach = largest;
   for (const auto& s : present) reach = std::max(reach, s.radius);
-  OverlapGrid grid(bounds(region), 2 * reach);
+  OverlapGrid grid(box, 2 * reach, radii.size() + present.size());
   for (const auto& s : present) grid.add(s);
-  if (pattern == FillPattern::lattice) return fill_lattice(region, radii, largest, grid);
-  return fill_random(region, radii, seed, grid);
-}
-
-Real region_volume(const FillRegion& region) {
-  if (const auto* box = std::get_if<Box>(&region)) {
-    const Vec3 l = box->max - box->min;
-    return l.x * l.y * l.z;
+  if (pattern == FillPattern::lattice) return fill_lattice(room, box, radii, largest, grid);
+  if (pattern == FillPattern::hexagonal) return fill_hexagonal(room, box, radii, largest, grid);
+  Real volume = 0;
+  for (const Real r : radii) volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  std::vector<Vec3> some;
+  if (volume <= one_by_one_limit * region_volume(region)) {
+    OverlapGrid filling = grid;
+    some = fill_one_by_one(room, box, radii, seed, filling);
+    if (some.size() == radii.size()) return some;
   }
-  const auto& c = std::get<CylinderRegion>(region);
-  return std::numbers::pi * c.radius * c.radius * norm(c.to - c.from);
+  const std::vector<Vec3> all = fill_densely(room, region, radii, seed, present, grid);
+  return all.size() == radii.size() ? all : some;
 }
 
 }  // namespace pellicle::dem
