@@ -91,9 +91,11 @@ particles:
   - {material: glass, diameter: {log_normal: {median: "1.5 mm", geometric_sd: 1.3, by: mass, min: "0.8 mm", max: "3 mm"}},
      fill: {box: {min: [0, 0, "40 mm"], max: ["40 mm", "40 mm", "60 mm"]}, solids_fraction: 0.1}}
   - {material: glass, count: 200, diameter: {rosin_rammler: {size: "2 mm", spread: 2, min: "1 mm", max: "4 mm"}},
-     fill: {box: {min: [0, 0, "60 mm"], max: ["40 mm", "40 mm", "80 mm"]}}}
+     fill: {cone: {from: ["20 mm", "20 mm", "60 mm"], to: ["20 mm", "20 mm", "80 mm"], from_radius: "10 mm",
+                   to_radius: "20 mm"}}}
   - {material: glass, count: 100, diameter: {table: {diameters: ["1 mm", "2 mm"], shares: [3, 1], by: mass}},
-     fill: {box: {min: [0, 0, "80 mm"], max: ["40 mm", "40 mm", "90 mm"]}}}
+     fill: {annulus: {from: ["20 mm", "20 mm", "80 mm"], to: ["20 mm", "20 mm", "90 mm"], inner_radius: "8 mm",
+                      outer_radius: "20 mm"}, pattern: hexagonal}}
   - {material: glass, count: 100, diameter: {table: {diameters: ["1 mm", "2 mm", "3 mm"], finer: [0, 0.2, 1]}},
      fill: {box: {min: [0, 0, "90 mm"], max: ["40 mm", "40 mm", "100 mm"]}}}
 )";

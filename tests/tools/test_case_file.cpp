@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/key_catalogue.hpp"
 #include "tests/tools/cases_for_tests.hpp"
+#include "tools/pellicle/build_case.hpp"
 #include "tools/pellicle/case_checks.hpp"
 #include "tools/pellicle/case_file.hpp"
 #include "tools/pellicle/case_keys.hpp"
@@ -304,10 +305,10 @@ TEST(CaseErrors, Populations) {
             at("fill: {box: {min: [0, 0, \"10 mm\"]") +
                 ": particles.0.fill: 10000 particles do not fit: they would take 2.09 of the region's "
                 "volume; at most 0.524 with pattern lattice");
-  EXPECT_EQ(bed_errors("particles.2.fill.solids_fraction=0.6"),
+  EXPECT_EQ(bed_errors("particles.2.fill.solids_fraction=0.65"),
             at("\"61 mm\"") +
-                ": particles.2.fill: 1031 particles do not fit: they would take 0.6 of the region's volume; "
-                "at most 0.384 with pattern random");
+                ": particles.2.fill: 1117 particles do not fit: they would take 0.65 of the region's volume; "
+                "at most 0.6 with pattern random");
   EXPECT_EQ(bed_errors("particles.1.total_mass=1e-9"),
             at("total_mass") +
                 ": particles.1: it comes to no particle at all; a mass or solids fraction of at least one "
@@ -475,6 +476,40 @@ TEST(CaseAmounts, DistributionsAreFilledUpToTheirTarget) {
                                                           {"particles.1.diameter={uniform: "
                                                            "{min: 1 mm, max: 2 mm}}"}),
                                                1)[0]);
+}
+
+// Populations of one region share it: neither fits at random around the other at 0.25 each, together they do.
+TEST(CaseParticles, PopulationsOfOneRegionMix) {
+  const std::string half =
+      "{material: glass, diameter: 2 mm, fill: {box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03]}, "
+      "solids_fraction: 0.25}}";
+  const CaseSpec spec = parse_case(powders_case, "c.yaml", {"particles=[" + half + ", " + half + "]"});
+  const auto particles = make_particles(spec);
+  ASSERT_EQ(particles.size(), 2u * static_cast<std::size_t>(spec.particles[0].filled));
+  Real heights[2] = {0, 0};
+  for (std::size_t a = 0; a < particles.size(); ++a) {
+    heights[a / (particles.size() / 2)] += particles[a].position.z / static_cast<Real>(particles.size() / 2);
+    for (std::size_t b = 0; b < a; ++b) {
+      ASSERT_GE(norm(particles[a].position - particles[b].position), 0.002 * (1 - 1e-9));
+    }
+  }
+  // Mixed: both in the middle, within 4 standard errors of 28 mm/sqrt(12) over 1611 particles.
+  EXPECT_NEAR(heights[0], 0.015, 4 * 0.028 / std::sqrt(12.0 * 1611));
+  EXPECT_NEAR(heights[1], 0.015, 4 * 0.028 / std::sqrt(12.0 * 1611));
+  EXPECT_EQ(errors(powders_case, {"particles=[" + half + ", " + half + ", " + half + "]"}).substr(0, 130),
+            "--set: particles.0.fill: 1611 particles do not fit: with those of the same region they would "
+            "take 0.75 of "
+            "the region's volume; at mo");
+}
+
+TEST(CaseErrors, RoundRegions) {
+  EXPECT_EQ(errors(powders_case, {"particles.3.fill.cone.to_radius=30 mm"}).substr(0, 64),
+            "c.yaml:15: particles.3.fill.cone: it reaches out of the domain; ");
+  EXPECT_EQ(
+      errors(powders_case, {"particles.3.fill.cone.to_radius=0", "particles.3.fill.cone.from_radius=0"}),
+      "--set: particles.3.fill.cone.to_radius: both radii are 0; one greater than 0");
+  EXPECT_EQ(errors(powders_case, {"particles.4.fill.annulus.outer_radius=5 mm"}),
+            "--set: particles.4.fill.annulus.outer_radius: it is not beyond inner_radius; a larger one");
 }
 
 // Every enumeration of the case file is held by position in its list.

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "core/error.hpp"
 #include "core/model_variant.hpp"
-#include "dem/fill.hpp"
 #include "tools/pellicle/case_checks.hpp"
 
 namespace pellicle::tools {
@@ -31,36 +29,6 @@ dem::PlaneWall make_side(const CaseSpec& spec, const WallSpec& wall, cfd::Side s
   plane.velocity = wall.velocity;
   plane.material = wall.material;
   return plane;
-}
-
-void add_filled(const CaseSpec& spec, std::size_t index, std::uint64_t seed,
-                std::vector<dem::ParticleSeed>& particles) {
-  const PopulationSpec& population = spec.particles[index];
-  const FillSpec& fill = *population.fill;
-  const std::vector<Real> radii = draw_radii(spec, index);
-  dem::FillRegion region;
-  if (fill.box) region = *fill.box;
-  if (fill.cylinder)
-    region = dem::CylinderRegion{fill.cylinder->from, fill.cylinder->to, fill.cylinder->radius};
-  std::vector<dem::PlacedSphere> present;
-  present.reserve(particles.size());
-  for (const auto& p : particles) present.push_back({p.position, p.radius});
-  const auto pattern = fill.pattern;
-  const std::vector<Vec3> centres = dem::fill_region(region, pattern, radii, seed, present);
-  if (centres.size() < radii.size()) {
-    Real volume = 0;
-    for (const Real r : radii) volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
-    const Real fraction = volume / dem::region_volume(region);
-    throw InputError(
-        fill.where + ": " + std::to_string(radii.size()) + " particles do not fit, only " +
-        std::to_string(centres.size()) + " do (the solids fraction would be " + std::to_string(fraction) +
-        "); allowed is a larger region (random fills up to about 0.35, lattice up to 0.52) or fewer "
-        "particles");
-  }
-  for (std::size_t i = 0; i < centres.size(); ++i) {
-    particles.push_back(
-        {centres[i], population.velocity, population.spin, radii[i], population.material, population.fixed});
-  }
 }
 
 }  // namespace
@@ -120,21 +88,6 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
   setup.gravity = spec.gravity;
   setup.time_step = particle_step;
   return setup;
-}
-
-std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec) {
-  std::vector<dem::ParticleSeed> particles;
-  std::uint64_t seed = spec.seed;
-  // Listed particles first, so that fills keep clear of them; ids follow this order.
-  for (const PopulationSpec& population : spec.particles) {
-    for (const ListedParticleSpec& p : population.list) {
-      particles.push_back({p.position, p.velocity, p.spin, 0.5 * p.diameter, population.material, p.fixed});
-    }
-  }
-  for (std::size_t i = 0; i < spec.particles.size(); ++i) {
-    if (spec.particles[i].fill) add_filled(spec, i, seed++, particles);
-  }
-  return particles;
 }
 
 coupling::CouplingOptions make_coupling_options(const CaseSpec& spec) {

@@ -21,12 +21,6 @@ std::int64_t whole_number(Real value) { return static_cast<std::int64_t>(std::mi
 
 }  // namespace
 
-Real region_volume(const FillSpec& fill) {
-  if (fill.box) return dem::region_volume(*fill.box);
-  return dem::region_volume(
-      dem::CylinderRegion{fill.cylinder->from, fill.cylinder->to, fill.cylinder->radius});
-}
-
 Real mean_particle_volume(const PopulationSpec& population) {
   if (!population.sizes) return sphere_volume(population.diameter);
   return dem::SizeSampler(*population.sizes->distribution()).mean_volume();
@@ -37,8 +31,9 @@ std::int64_t count_fill(const CaseSpec& spec, std::size_t index) {
   if (population.count) return *population.count;
   const bool by_mass = population.total_mass.has_value();
   const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
-  const Real volume = by_mass ? *population.total_mass / density
-                              : *population.fill->solids_fraction * region_volume(*population.fill);
+  const Real volume = by_mass
+                          ? *population.total_mass / density
+                          : *population.fill->solids_fraction * dem::region_volume(population.fill->region());
   const Real expected = volume / mean_particle_volume(population);
   if (!population.sizes) return whole_number(by_mass ? std::round(expected) : std::floor(expected));
   if (expected > std::numeric_limits<Index>::max()) return whole_number(expected);  // refused later

@@ -16,10 +16,19 @@ namespace pellicle::tools {
 
 namespace {
 
-/// Largest solids fractions that a fill can reach: where random placing of spheres one after the other jams, and a
-/// simple cubic lattice of touching spheres.
-constexpr Real random_limit = 0.384;
-constexpr Real lattice_limit = std::numbers::pi / 6;
+/// Largest solids fraction that a fill can reach: where spheres moved apart from random places nearly jam, and
+/// lattices of touching spheres.
+constexpr Real largest_fraction(dem::FillPattern pattern) {
+  switch (pattern) {
+    case dem::FillPattern::lattice:
+      return std::numbers::pi / 6;
+    case dem::FillPattern::random:
+      return 0.60;
+    case dem::FillPattern::hexagonal:
+      return std::numbers::pi / (3 * std::numbers::sqrt2);
+  }
+  return 0;
+}
 
 class Checker {
  public:
@@ -167,11 +176,11 @@ class Checker {
 
   void check_fill(const PopulationSpec& population) {
     const FillSpec& fill = *population.fill;
-    if (fill.box && !(inside(fill.box->min) && inside(fill.box->max))) {
-      wrong(fill.where, "box", "it reaches out of the domain; " + domain_text());
-    }
-    if (fill.cylinder && !(inside(fill.cylinder->from) && inside(fill.cylinder->to))) {
-      wrong(fill.where, "cylinder", "its axis reaches out of the domain; " + domain_text());
+    const dem::FillRegion region = fill.region();
+    const Box bounds = dem::region_bounds(region);
+    if (!(inside(bounds.min) && inside(bounds.max))) {
+      wrong(fill.where, fill.box ? "box" : (fill.cylinder ? "cylinder" : (fill.cone ? "cone" : "annulus")),
+            "it reaches out of the domain; " + domain_text());
     }
     const std::int64_t count = particle_count(population);
     if (count < 1) {
@@ -179,16 +188,23 @@ class Checker {
                     "it comes to no particle at all; a mass or solids fraction of at least one particle");
       return;
     }
-    const Real fraction = static_cast<Real>(count) * mean_particle_volume(population) / region_volume(fill);
-    const bool lattice = fill.pattern == dem::FillPattern::lattice;
-    const Real limit = lattice ? lattice_limit : random_limit;
+    Real volume = 0;
+    for (const auto& other : spec_.particles) {
+      const bool together = &other == &population || (other.fill && other.fill->mixes_with(fill));
+      if (together) volume += static_cast<Real>(particle_count(other)) * mean_particle_volume(other);
+    }
+    const Real fraction = volume / dem::region_volume(region);
+    const Real limit = largest_fraction(fill.pattern);
     if (fraction > limit) {
       problems_.add(
           fill.where,
-          fmt::format(
-              "{} particles do not fit: they would take {:.3g} of the region's volume; at most {:.3g} with "
-              "pattern {}",
-              count, fraction, limit, lattice ? "lattice" : "random"));
+          fmt::format("{} particles do not fit: {} would take {:.3g} of the region's volume; at most {:.3g} "
+                      "with pattern {}",
+                      count,
+                      volume > 1.0001 * static_cast<Real>(count) * mean_particle_volume(population)
+                          ? "with those of the same region they"
+                          : "they",
+                      fraction, limit, fill_patterns[static_cast<std::size_t>(fill.pattern)].name));
     }
   }
 

@@ -15,9 +15,6 @@ void check_case(CaseSpec& spec, core::InputProblems& problems);
 /// Whether particles of one material can touch particles or a wall of the other.
 bool can_meet(const CaseSpec& spec, int material_a, int material_b);
 
-/// Volume of the region of a fill [m3].
-Real region_volume(const FillSpec& fill);
-
 /// Mean volume of the particles of a fill, expected for a distribution [m3].
 Real mean_particle_volume(const PopulationSpec& population);
 

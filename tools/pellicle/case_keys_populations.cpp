@@ -77,21 +77,55 @@ void describe_sizes(Keys& keys, SizesSpec& sizes) {
   keys.exactly_one({"uniform", "normal", "log_normal", "rosin_rammler", "table"});
 }
 
-void describe_cylinder(Keys& keys, CylinderSpec& cylinder) {
-  keys.vector({"from", "one end of the axis", Need::required}, {dimension::length}, cylinder.from);
-  keys.vector({"to", "other end of the axis", Need::required}, {dimension::length}, cylinder.to);
+/// A round region: its axis, and radii greater than 0, or one of them 0 for a cone.
+template <class Region>
+void describe_axis(Keys& keys, Region& region) {
+  keys.vector({"from", "one end of the axis", Need::required}, {dimension::length}, region.from);
+  keys.vector({"to", "other end of the axis", Need::required}, {dimension::length}, region.to);
+  if (keys.reading() && keys.given("from") && keys.given("to") && region.from == region.to) {
+    keys.problem("to", "it is the same point as from; the other end of the axis");
+  }
+}
+
+void describe_cylinder(Keys& keys, dem::CylinderRegion& cylinder) {
+  describe_axis(keys, cylinder);
   keys.real({"radius", "of the cylinder", Need::required}, {dimension::length, range::positive},
             cylinder.radius);
-  if (keys.reading() && keys.given("from") && keys.given("to") && cylinder.from == cylinder.to) {
-    keys.problem("to", "it is the same point as from; the other end of the axis");
+}
+
+void describe_cone(Keys& keys, dem::ConeRegion& cone) {
+  describe_axis(keys, cone);
+  keys.real({"from_radius", "at from", Need::required}, {dimension::length, range::non_negative},
+            cone.from_radius);
+  keys.real({"to_radius", "at to", Need::required}, {dimension::length, range::non_negative}, cone.to_radius);
+  if (keys.reading() && keys.given("from_radius") && keys.given("to_radius") && cone.from_radius == 0 &&
+      cone.to_radius == 0) {
+    keys.problem("to_radius", "both radii are 0; one greater than 0");
+  }
+}
+
+void describe_annulus(Keys& keys, dem::AnnulusRegion& annulus) {
+  describe_axis(keys, annulus);
+  keys.real({"inner_radius", "of the cylinder that is left out", Need::required},
+            {dimension::length, range::positive}, annulus.inner_radius);
+  keys.real({"outer_radius", "of the cylinder around it", Need::required},
+            {dimension::length, range::positive}, annulus.outer_radius);
+  if (keys.reading() && keys.given("inner_radius") && keys.given("outer_radius") &&
+      annulus.outer_radius <= annulus.inner_radius) {
+    keys.problem("outer_radius", "it is not beyond inner_radius; a larger one");
   }
 }
 
 void describe_fill(Keys& keys, FillSpec& fill) {
   if (keys.reading()) fill.where = keys.where();
   keys.section<Box>({"box", "the region is a box"}, fill.box, describe_box);
-  keys.section<CylinderSpec>({"cylinder", "the region is a cylinder"}, fill.cylinder, describe_cylinder);
-  keys.exactly_one({"box", "cylinder"});
+  keys.section<dem::CylinderRegion>({"cylinder", "the region is a cylinder"}, fill.cylinder,
+                                    describe_cylinder);
+  keys.section<dem::ConeRegion>({"cone", "the region is a cone, or a part of one cut off at right angles"},
+                                fill.cone, describe_cone);
+  keys.section<dem::AnnulusRegion>({"annulus", "the region is between two cylinders on the same axis"},
+                                   fill.annulus, describe_annulus);
+  keys.exactly_one({"box", "cylinder", "cone", "annulus"});
   keys.choice({"pattern", "how particles are placed"}, fill_patterns, fill.pattern);
   keys.real(
       {"solids_fraction", "as many particles as give this share of the region's volume; in place of count"},

@@ -11,6 +11,20 @@ std::string CaseSpec::where(const std::string& path) const {
   }
 }
 
+dem::FillRegion FillSpec::region() const {
+  if (cylinder) return *cylinder;
+  if (cone) return *cone;
+  if (annulus) return *annulus;
+  return box.value_or(Box{});
+}
+
+bool FillSpec::mixes_with(const FillSpec& other) const {
+  const auto same_box = [&] { return box->min == other.box->min && box->max == other.box->max; };
+  return pattern == dem::FillPattern::random && other.pattern == pattern &&
+         box.has_value() == other.box.has_value() && (!box || same_box()) && cylinder == other.cylinder &&
+         cone == other.cone && annulus == other.annulus;
+}
+
 std::optional<dem::SizeDistribution> SizesSpec::distribution() const {
   if (uniform) return *uniform;
   if (normal) return *normal;

@@ -66,17 +66,20 @@ struct ContactSpec {
   std::vector<PairSpec> pairs;
 };
 
-struct CylinderSpec {
-  Vec3 from, to;    ///< ends of the axis [m]
-  Real radius = 0;  ///< [m]
-};
-
 struct FillSpec {
   std::string where;
-  std::optional<Box> box;  ///< exactly one of box and cylinder
-  std::optional<CylinderSpec> cylinder;
+  // Exactly one is set.
+  std::optional<Box> box;
+  std::optional<dem::CylinderRegion> cylinder;
+  std::optional<dem::ConeRegion> cone;
+  std::optional<dem::AnnulusRegion> annulus;
   dem::FillPattern pattern = dem::FillPattern::random;
   std::optional<Real> solids_fraction;  ///< how many particles, when neither count nor total_mass is given
+
+  /// The one that is set.
+  dem::FillRegion region() const;
+  /// Whether both place particles at random in the same region: they are then placed together, and mix.
+  bool mixes_with(const FillSpec& other) const;
 };
 
 struct ListedParticleSpec {
