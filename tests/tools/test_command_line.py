@@ -49,9 +49,9 @@ BAD_INPUT = [
     ("negative diameter", ('diameter: "5 mm"', 'diameter: "-5 mm"'),
      '14: particles.0.diameter: "-5 mm" is out of range; a length greater than 0'),
     ("more volume than room", ("count: 2", "count: 2000"),
-     "15: particles.0.fill: 2000 particles do not fit: they would take 1.05 of the region's volume; at most 0.384 with "
+     "15: particles.0.fill: 2000 particles do not fit: they would take 1.05 of the region's volume; at most 0.6 with "
      "pattern random"),
-    ("more particles than random placing can fit", ("count: 2", "count: 725"), r"15: particles.0.fill: .* do not fit"),
+    ("more particles than random placing can fit", ("count: 2", "count: 1140"), r"15: particles.0.fill: .* do not fit"),
     ("step over the bound", ('particle_step: "1e-5 s"', 'particle_step: "1e-3 s"'),
      "3: time.particle_step: 0.001 s is over the bound of "),
     ("key given twice", ("    count: 2", "    count: 2\n    count: 3"),
