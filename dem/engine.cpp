@@ -35,13 +35,21 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   std::vector<bool> of_walls(setup_.materials.size(), false);
   for (const ParticleSeed& s : seeds) of_particles.at(static_cast<std::size_t>(s.material)) = true;
   for (const PlaneWall& w : setup_.walls) of_walls.at(static_cast<std::size_t>(w.material)) = true;
+  for (const int material : setup_.later.materials)
+    of_particles.at(static_cast<std::size_t>(material)) = true;
   require_pairs(setup_.materials, setup_.pairs, of_particles, of_walls);
   allocate(seeds.size());
   search_.clear();
   started_ = false;
   left_ = 0;
-  left_momentum_ = gravity_impulse_ = Vec3{};
+  entered_mass_ = left_mass_ = 0;
+  entered_momentum_ = left_momentum_ = gravity_impulse_ = Vec3{};
   volume_time_ = 0;
+  next_id_ = static_cast<std::int32_t>(seeds.size());
+  one_particle_material_ = true;
+  take_stock(seeds);
+  if (start_count_ == 0) return;
+  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
   if (seeds.empty()) return;
   const auto place = Kokkos::create_mirror_view(particles_.position_radius);
   const auto motion = Kokkos::create_mirror_view(particles_.velocity_spin);
@@ -66,8 +74,9 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   Kokkos::deep_copy(particles_.mass, mass);
   one_particle_material_ =
       std::all_of(seeds.begin(), seeds.end(), [](const ParticleSeed& s) { return s.material == 0; });
-  take_stock();
-  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
+  const ParticleTotals totals = compute_totals();
+  moving_mass_ = totals.mass;
+  moving_volume_ = totals.volume;
   canonicalise();
 }
 

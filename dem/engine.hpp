@@ -29,6 +29,14 @@ struct ParticleSeed {
   bool fixed = false;
 };
 
+/// Particles that will be added while the engine runs (see Engine::add_particles): they shape the cell grid, which must
+/// be the same after a restart, and tell which materials can meet.
+struct LaterParticles {
+  std::vector<int> materials;
+  Real smallest_radius = 0, largest_radius = 0;  ///< [m]
+  std::int64_t count = 0;                        ///< about
+};
+
 /// What an engine is made of.
 struct EngineSetup {
   Domain domain;
@@ -39,6 +47,7 @@ struct EngineSetup {
   Vec3 gravity{};      ///< [m/s²]
   Real time_step = 0;  ///< [s]
   SkinOptions skin{};
+  LaterParticles later{};
 };
 
 /// Contacts since the last call of `collect_report`, and how many touch now.
@@ -72,6 +81,10 @@ class Engine {
   /// Replaces all particles; ids are 0, 1, … in the order given. Throws std::invalid_argument where contact properties
   /// of two materials that can meet are missing.
   void set_particles(const std::vector<ParticleSeed>& seeds);
+
+  /// Adds particles between two outer steps, with ids that go on; a velocity is that at the time of the position. They
+  /// must be as announced in `EngineSetup::later`. Memory grows by a quarter now and then.
+  void add_particles(const std::vector<ParticleSeed>& seeds);
 
   /// Before the substeps of an outer step: removes particles that left through open sides (counted), stops the run if
   /// one is where it cannot be, and re-sorts memory in space now and then. May reorder the particle arrays.
@@ -108,6 +121,11 @@ class Engine {
   const EngineSetup& setup() const { return setup_; }
   ParticleTotals compute_totals() const;
   std::int64_t left_through_open_sides() const { return left_; }
+  /// Mass of the moving particles that were added and that left through open sides so far [kg].
+  Real entered_mass() const { return entered_mass_; }
+  Real left_mass() const { return left_mass_; }
+  /// Momentum that added particles brought in so far, like that of the totals [kg m/s].
+  const Vec3& entered_momentum() const { return entered_momentum_; }
   /// Momentum that particles took out through open sides so far [kg m/s].
   const Vec3& left_momentum() const { return left_momentum_; }
   /// Impulse of gravity on the moving particles so far [N s].
@@ -121,12 +139,13 @@ class Engine {
 
  private:
   void allocate(std::size_t n);
+  void reserve(std::size_t capacity);
   void begin_substep(core::Timers& timers);
   void end_substep();
   void build_lists();
   void sort_memory();
   void remove_left();
-  void take_stock();
+  void take_stock(const std::vector<ParticleSeed>& seeds);
   [[noreturn]] void stop_for_overlap(Real overlap) const;
 
   EngineSetup setup_;
@@ -148,7 +167,10 @@ class Engine {
   bool started_ = false;
   std::int64_t substeps_ = 0;
   std::int64_t builds_ = 0;
+  std::int32_t next_id_ = 0;
   std::int64_t left_ = 0;
+  Real entered_mass_ = 0, left_mass_ = 0;  // [kg]
+  Vec3 entered_momentum_{};
   Vec3 left_momentum_{};
   Vec3 gravity_impulse_{};
   Real volume_time_ = 0;

@@ -21,16 +21,20 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/list_builds", builds_);
   file.write("dem/left", left_);
   file.write("dem/left_momentum", left_momentum_);
+  file.write("dem/left_mass", left_mass_);
+  file.write("dem/entered_mass", entered_mass_);
+  file.write("dem/entered_momentum", entered_momentum_);
+  file.write("dem/next_id", std::int64_t{next_id_});
   file.write("dem/gravity_impulse", gravity_impulse_);
   file.write("dem/volume_time", volume_time_);
   file.write("dem/started", std::int64_t{started_ ? 1 : 0});
-  if (n == 0) return;
   file.write("dem/smallest_radius", smallest_radius_);
   file.write("dem/largest_radius", largest_radius_);
   file.write("dem/start_count", start_count_);
   file.write("dem/moving_mass", moving_mass_);
   file.write("dem/moving_volume", moving_volume_);
   file.write("dem/one_particle_material", std::int64_t{one_particle_material_ ? 1 : 0});
+  if (n == 0) return;
   file.write("dem/position_radius", host_copy(particles_.position_radius, n));
   file.write("dem/velocity_spin", host_copy(particles_.velocity_spin, n));
   file.write("dem/mass", host_copy(particles_.mass, n));
@@ -47,10 +51,23 @@ void Engine::load(core::CheckpointReader& file) {
   builds_ = file.read_int64("dem/list_builds");
   left_ = file.read_int64("dem/left");
   left_momentum_ = file.read_vec3("dem/left_momentum");
+  left_mass_ = file.read_double("dem/left_mass");
+  entered_mass_ = file.read_double("dem/entered_mass");
+  entered_momentum_ = file.read_vec3("dem/entered_momentum");
+  next_id_ = static_cast<std::int32_t>(file.read_int64("dem/next_id"));
   gravity_impulse_ = file.read_vec3("dem/gravity_impulse");
   volume_time_ = file.read_double("dem/volume_time");
   started_ = file.read_int64("dem/started") != 0;
   search_.clear();
+  smallest_radius_ = file.read_double("dem/smallest_radius");
+  largest_radius_ = file.read_double("dem/largest_radius");
+  start_count_ = file.read_int64("dem/start_count");
+  moving_mass_ = file.read_double("dem/moving_mass");
+  moving_volume_ = file.read_double("dem/moving_volume");
+  one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
+  if (start_count_ > 0) {
+    search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
+  }
   if (n == 0) return;
   read_array(file, "dem/position_radius", particles_.position_radius);
   read_array(file, "dem/velocity_spin", particles_.velocity_spin);
@@ -59,13 +76,6 @@ void Engine::load(core::CheckpointReader& file) {
   read_array(file, "dem/angular_acceleration", particles_.angular_acceleration);
   read_array(file, "dem/touching", result_.touching);
   history_.load(file);
-  smallest_radius_ = file.read_double("dem/smallest_radius");
-  largest_radius_ = file.read_double("dem/largest_radius");
-  start_count_ = file.read_int64("dem/start_count");
-  moving_mass_ = file.read_double("dem/moving_mass");
-  moving_volume_ = file.read_double("dem/moving_volume");
-  one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
-  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
   canonicalise();
 }
 

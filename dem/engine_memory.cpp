@@ -136,6 +136,7 @@ void Engine::remove_left() {
   list_valid_ = false;
   const ParticleTotals rest = compute_totals();
   left_momentum_ += momentum - rest.momentum;
+  left_mass_ += moving_mass_ - rest.mass;
   moving_mass_ = rest.mass;
   moving_volume_ = rest.volume;
 }

@@ -69,17 +69,16 @@ ParticleTotals Engine::compute_totals() const {
   return totals;
 }
 
-void Engine::take_stock() {
-  const auto place = host_copy(particles_.position_radius, particles_.count);
-  start_count_ = particles_.count;
-  smallest_radius_ = largest_radius_ = place(0).radius;
-  for (std::size_t p = 0; p < place.extent(0); ++p) {
-    smallest_radius_ = std::min(smallest_radius_, place(p).radius);
-    largest_radius_ = std::max(largest_radius_, place(p).radius);
+void Engine::take_stock(const std::vector<ParticleSeed>& seeds) {
+  const LaterParticles& later = setup_.later;
+  start_count_ = static_cast<std::int64_t>(seeds.size()) + later.count;
+  smallest_radius_ = later.count > 0 ? later.smallest_radius : seeds.empty() ? 0 : seeds.front().radius;
+  largest_radius_ = later.count > 0 ? later.largest_radius : 0;
+  for (const ParticleSeed& s : seeds) {
+    smallest_radius_ = std::min(smallest_radius_, s.radius);
+    largest_radius_ = std::max(largest_radius_, s.radius);
   }
-  const ParticleTotals totals = compute_totals();
-  moving_mass_ = totals.mass;
-  moving_volume_ = totals.volume;
+  moving_mass_ = moving_volume_ = 0;
 }
 
 }  // namespace pellicle::dem

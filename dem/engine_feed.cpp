@@ -1,0 +1,96 @@
+// Particles that enter an engine while it runs.
+#include <numbers>
+#include <stdexcept>
+
+#include "core/error.hpp"
+#include "dem/engine.hpp"
+#include "dem/engine_arrays.hpp"
+
+namespace pellicle::dem {
+namespace {
+
+/// Memory grows by a quarter, or by this many particles.
+constexpr std::size_t least_growth = 1024;
+
+template <class T>
+void copy_first(const DeviceArray<T>& to, const DeviceArray<T>& from, Index count) {
+  const std::pair<Index, Index> range(0, count);
+  Kokkos::deep_copy(Kokkos::subview(to, range), Kokkos::subview(from, range));
+}
+
+/// Copies `values` to the entries of an array from `first` on.
+template <class T>
+void put(const DeviceArray<T>& array, Index first, const std::vector<T>& values) {
+  const Kokkos::View<const T*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(
+      values.data(), values.size());
+  const std::pair<Index, Index> range(first, first + static_cast<Index>(values.size()));
+  Kokkos::deep_copy(Kokkos::subview(array, range), host);
+}
+
+}  // namespace
+
+void Engine::reserve(std::size_t capacity) {
+  if (capacity <= particles_.position_radius.extent(0)) return;
+  const Particles before = particles_;
+  const DeviceArray<std::int32_t> touching = result_.touching;
+  const ContactHistory history = history_;
+  allocate(capacity);
+  particles_.count = before.count;
+  history_ = history;
+  if (before.count == 0) return;
+  copy_first(particles_.position_radius, before.position_radius, before.count);
+  copy_first(particles_.velocity_spin, before.velocity_spin, before.count);
+  copy_first(particles_.mass, before.mass, before.count);
+  copy_first(particles_.acceleration, before.acceleration, before.count);
+  copy_first(particles_.angular_acceleration, before.angular_acceleration, before.count);
+  copy_first(result_.touching, touching, before.count);
+}
+
+void Engine::add_particles(const std::vector<ParticleSeed>& seeds) {
+  if (seeds.empty()) return;
+  const Index first = particles_.count;
+  const std::size_t total = static_cast<std::size_t>(first) + seeds.size();
+  if (total + static_cast<std::size_t>(next_id_) > std::numeric_limits<Index>::max()) {
+    throw RunError("more particles than can be counted have entered");
+  }
+  history_.pack(list_);  // new particles have no contacts to remember
+  if (total > particles_.position_radius.extent(0)) {
+    reserve(std::max(total + total / 4, static_cast<std::size_t>(first) + least_growth));
+  }
+  std::vector<PositionRadius> place;
+  std::vector<VelocitySpin> motion;
+  std::vector<Real> mass;
+  // The velocity is that at the time of the position; the half-step velocity behind it is that of free flight.
+  using Acceleration = std::decay_t<decltype(particles_.acceleration)>::value_type;
+  using Component = decltype(Acceleration::x);
+  const Vec3 free_flight = started_ ? setup_.gravity : Vec3{};
+  const Acceleration acceleration{static_cast<Component>(free_flight.x),
+                                  static_cast<Component>(free_flight.y),
+                                  static_cast<Component>(free_flight.z)};
+  for (const ParticleSeed& s : seeds) {
+    const Real density = setup_.materials.at(static_cast<std::size_t>(s.material)).density;
+    mass.push_back(density * (4.0 / 3.0) * std::numbers::pi * s.radius * s.radius * s.radius);
+    place.push_back({s.position.x, s.position.y, s.position.z, s.radius});
+    motion.push_back({s.velocity.x, s.velocity.y, s.velocity.z, s.spin.x, s.spin.y, s.spin.z,
+                      s.fixed ? 0 : 1 / mass.back(), s.material, next_id_++});
+    one_particle_material_ = one_particle_material_ && s.material == 0;
+    if (s.fixed) continue;
+    entered_mass_ += mass.back();
+    entered_momentum_ +=
+        mass.back() *
+        (s.velocity - (0.5 * setup_.time_step) * Vec3{acceleration.x, acceleration.y, acceleration.z});
+  }
+  put(particles_.position_radius, first, place);
+  put(particles_.velocity_spin, first, motion);
+  put(particles_.mass, first, mass);
+  put(particles_.acceleration, first, std::vector<Acceleration>(seeds.size(), acceleration));
+  put(particles_.angular_acceleration, first, std::vector<Acceleration>(seeds.size()));
+  put(result_.touching, first, std::vector<std::int32_t>(seeds.size()));
+  particles_.count = static_cast<Index>(total);
+  const ParticleTotals totals = compute_totals();
+  moving_mass_ = totals.mass;
+  moving_volume_ = totals.volume;
+  list_valid_ = false;
+}
+
+}  // namespace pellicle::dem

@@ -1,0 +1,294 @@
+// Particles that enter while a run goes on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "core/checkpoint.hpp"
+#include "dem/feed.hpp"
+#include "tests/core/temporary_folder.hpp"
+#include "tests/dem/bed.hpp"
+
+namespace pellicle::dem {
+namespace {
+
+using tests::advance;
+using tests::Grain;
+using tests::grains;
+
+constexpr Real density = 2500;  // that of tests::glass_setup
+
+Real mass_of(Real diameter) { return density * M_PI / 6 * diameter * diameter * diameter; }
+
+/// 2 mm spheres that fall out of a plate at the top of a box of 20 x 20 x 40 mm.
+FeedSetup plate_feed(const Domain& domain) {
+  FeedSetup setup;
+  setup.region = Box{{0.002, 0.002, 0.035}, {0.018, 0.018, 0.035}};
+  setup.domain = domain;
+  setup.to = 10;
+  setup.rate = 0.02;
+  setup.density = density;
+  setup.diameter = 0.002;
+  setup.particle.velocity = {0, 0, -0.5};
+  setup.seed = 4;
+  return setup;
+}
+
+/// A box whose particles fall through an open floor.
+EngineSetup open_box(const FeedSetup& feed_setup) {
+  auto setup = tests::glass_setup({0.02, 0.02, 0.04}, 1e-5);
+  setup.domain.open_min = {0, 0, 1};
+  setup.gravity = {0, 0, -9.81};
+  tests::add_box_walls(setup);
+  const Feed feed(feed_setup);
+  setup.later = {{0}, feed.smallest_radius(), feed.largest_radius(), feed.expected_particles()};
+  return setup;
+}
+
+/// One outer step of ten substeps that begins at step × 0.1 ms.
+void outer_step(Engine& engine, Feed& feed, int step) {
+  const Real time = 1e-4 * step;
+  if (feed.is_due(time)) engine.add_particles(feed.draw(time, step, spheres_near(engine, feed.reach())));
+  engine.prepare_outer_step();
+  advance(engine, 10);
+  (void)engine.collect_report();
+}
+
+TEST(Feed, KeepsToItsRate) {
+  const Domain domain = tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain;
+  FeedSetup setup = plate_feed(domain);
+  setup.from = 0.1;
+  setup.to = 0.3;
+  Feed even(setup);
+  setup.diameter = UniformSizes{0.001, 0.003};
+  Feed spread(setup);
+  setup.by_count = true;
+  setup.rate = 1000;
+  Feed counted(setup);
+  std::int64_t entered = 0;
+  for (int step = 0; step <= 4000; ++step) {
+    const Real time = 1e-4 * step;
+    entered += static_cast<std::int64_t>(even.draw(time, step, {}).size());
+    (void)spread.draw(time, step, {});
+    (void)counted.draw(time, step, {});
+    const Real due = 0.02 * std::max(0.0, std::min(time, 0.3) - 0.1);
+    // The last one enters when its whole mass is due: the feed is behind by less than one particle.
+    ASSERT_LE(even.fed_mass(), due * (1 + 1e-9)) << time;
+    ASSERT_GT(even.fed_mass(), due - mass_of(0.002)) << time;
+    ASSERT_LE(spread.fed_mass(), due * (1 + 1e-9)) << time;
+    ASSERT_GT(spread.fed_mass(), due - mass_of(0.003)) << time;
+    ASSERT_EQ(even.waiting(time), 0);
+  }
+  // 4 g of 10.47 mg each; 1000/s for 0.2 s.
+  EXPECT_EQ(even.fed_particles(), static_cast<std::int64_t>(0.004 / mass_of(0.002)));
+  EXPECT_EQ(entered, even.fed_particles());
+  EXPECT_EQ(counted.fed_particles(), 200);
+  EXPECT_EQ(even.expected_particles(), even.fed_particles());
+}
+
+TEST(Feed, EntersInsideItsRegionAndTouchesNobody) {
+  Domain domain;
+  domain.box = {{0, 0, 0}, {0.02, 0.02, 0.04}};
+  domain.periodic = {1, 0, 0};
+  FeedSetup setup = plate_feed(domain);
+  setup.diameter = UniformSizes{0.001, 0.003};
+  setup.rate = 1e3;  // as many as find room
+  const DiscRegion disc{{0.01, 0.01, 0.03}, {0.6, 0, 0.8}, 0.008};
+  const Box thick{{0, 0, 0.01}, {0.02, 0.02, 0.02}};
+  for (const std::variant<Box, DiscRegion>& region : {std::variant<Box, DiscRegion>(thick), {disc}}) {
+    setup.region = region;
+    Feed feed(setup);
+    const std::vector<PlacedSphere> near{{{0.0195, 0.005, 0.015}, 0.003}, {{0.01, 0.01, 0.03}, 0.002}};
+    const auto entering = feed.draw(1, 7, near);
+    ASSERT_GT(entering.size(), 10u);
+    EXPECT_GT(feed.waiting(1), 0);
+    const Box reach = feed.reach();
+    for (std::size_t a = 0; a < entering.size(); ++a) {
+      const Vec3 x = entering[a].position;
+      const Real r = entering[a].radius;
+      const auto distance = [&](const Vec3& y) {  // the nearest of the images along x, by hand
+        Real nearest = 1;
+        for (const int image : {-1, 0, 1})
+          nearest = std::min(nearest, norm(x - y - Vec3{0.02 * image, 0, 0}));
+        return nearest;
+      };
+      for (const auto& other : near) ASSERT_GE(distance(other.position), (r + other.radius) * (1 - 1e-12));
+      for (std::size_t b = 0; b < a; ++b) {
+        ASSERT_GE(distance(entering[b].position), (r + entering[b].radius) * (1 - 1e-12));
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        ASSERT_GE(x[axis] - r, reach.min[axis] - 1e-12);
+        ASSERT_LE(x[axis] + r, reach.max[axis] + 1e-12);
+      }
+      if (std::holds_alternative<Box>(region)) {
+        for (int axis = 0; axis < 3; ++axis) {
+          ASSERT_GE(x[axis], thick.min[axis] + r * (1 - 1e-12));
+          ASSERT_LE(x[axis], thick.max[axis] - r * (1 - 1e-12));
+        }
+      } else {
+        ASSERT_NEAR(dot(x - disc.centre, disc.normal), 0, 1e-15);
+        ASSERT_LE(norm(x - disc.centre) + r, 0.008 * (1 + 1e-12));
+      }
+    }
+  }
+}
+
+TEST(Feed, WaitsUntilThereIsRoom) {
+  const Domain domain = tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain;
+  Feed feed(plate_feed(domain));
+  const std::vector<PlacedSphere> lid{{{0.01, 0.01, 0.035}, 0.02}};
+  EXPECT_TRUE(feed.draw(0.1, 0, lid).empty());
+  EXPECT_EQ(feed.fed_particles(), 0);
+  // 2 mg of 20 mg/s x 0.1 s, less the 10.47 µg with which the next one is due.
+  EXPECT_NEAR(feed.waiting(0.1), 0.002 - mass_of(0.002), 1e-12);
+  // 190 particles of 2 mm do not fit on a plate of 16 x 16 mm; those that do enter at once, the others later.
+  const auto some = feed.draw(0.1, 1, {});
+  EXPECT_GT(some.size(), 15u);
+  EXPECT_LT(some.size(), 64u);
+  for (int step = 2; step < 40; ++step) (void)feed.draw(0.1, step, {});
+  EXPECT_EQ(feed.fed_particles(), static_cast<std::int64_t>(0.002 / mass_of(0.002)));
+  EXPECT_EQ(feed.waiting(0.1), 0);
+}
+
+TEST(Feed, AddedParticlesFlyLikeOthers) {
+  auto setup = tests::glass_setup({1, 1, 1}, 1e-4);
+  setup.gravity = {1, -2, -9.81};
+  setup.later = {{0}, 0.001, 0.001, 10};
+  Engine engine(setup);
+  engine.set_particles({});
+  advance(engine, 3);
+  engine.prepare_outer_step();
+  engine.add_particles({{{0.2, 0.3, 0.9}, {0.5, 0.4, -0.3}, {1, 2, 3}, 0.001, 0, false}});
+  EXPECT_EQ(engine.particles().count, 1);
+  advance(engine, 1000);
+  engine.add_particles(
+      {{{0.2, 0.3, 0.9}, {}, {}, 0.001, 0, false}, {{0.5, 0.5, 0.5}, {}, {}, 0.001, 0, true}});
+  advance(engine, 1000);
+  const auto all = grains(engine.particles());
+  ASSERT_EQ(all.size(), 3u);
+  const auto expected = [&](const Vec3& x, const Vec3& v, Real t) {
+    return x + t * v + (0.5 * t * t) * setup.gravity;
+  };
+  // Leapfrog is exact for a constant acceleration; the acceleration at the entry may be single precision: half a step
+  // of 1e-4 s x 9.81 m/s2 x 6e-8 is 3e-11 m/s.
+  EXPECT_EQ(all[0].id, 0);
+  EXPECT_LT(norm(all[0].position - expected({0.2, 0.3, 0.9}, {0.5, 0.4, -0.3}, 0.2)), 3e-11);
+  EXPECT_EQ(all[1].id, 1);
+  EXPECT_LT(norm(all[1].position - expected({0.2, 0.3, 0.9}, {}, 0.1)), 3e-11);
+  EXPECT_EQ(all[2].id, 2);
+  EXPECT_TRUE(all[2].fixed);
+  EXPECT_EQ(all[2].position, (Vec3{0.5, 0.5, 0.5}));
+  // Momentum is what entered and what gravity gave; mass is that of two, the fixed one is not moving mass.
+  const auto totals = engine.compute_totals();
+  const Vec3 gained = engine.entered_momentum() + engine.gravity_impulse();
+  EXPECT_LT(norm(totals.momentum - gained), 1e-12 * norm(gained));
+  EXPECT_NEAR(engine.entered_mass(), 2 * mass_of(0.002), 1e-18);
+  EXPECT_NEAR(totals.mass, 2 * mass_of(0.002), 1e-18);
+}
+
+/// What a state is to the last bit, in the order of ids.
+std::vector<Real> bits(const Engine& engine) {
+  std::vector<Real> numbers;
+  for (const Grain& g : grains(engine.particles())) {
+    for (const Vec3& v : {g.position, g.velocity, g.spin}) {
+      for (int axis = 0; axis < 3; ++axis) numbers.push_back(v[axis]);
+    }
+  }
+  return numbers;
+}
+
+// Memory that grows must lose nothing of the particles that were there, springs of their contacts included.
+TEST(Feed, WhoeverIsThereDoesNotNoticeTheOthers) {
+  auto setup = tests::glass_setup({0.02, 0.02, 0.2}, 1e-5);
+  setup.contacts.tangential = Mindlin{};
+  setup.gravity = {2, 0, -9.81};
+  tests::add_box_walls(setup);
+  setup.later = {{0}, 0.001, 0.001, 5000};
+  std::vector<ParticleSeed> seeds;
+  for (int p = 0; p < 60; ++p) {
+    seeds.push_back(
+        {Vec3{0.0035 + 0.003 * (p % 5), 0.0035 + 0.003 * ((p / 5) % 4), 0.0012 + 0.0021 * (p / 20)} +
+             1e-4 * tests::random_vector(5, p),
+         {},
+         {},
+         0.001,
+         0,
+         false});
+  }
+  Engine alone(setup), fed(setup);
+  alone.set_particles(seeds);
+  fed.set_particles(seeds);
+  std::int64_t contacts = 0;
+  for (int step = 0; step < 600; ++step) {
+    // 20 resting far above, out of reach for as long as this goes on.
+    if (step % 20 == 0) {
+      std::vector<ParticleSeed> more;
+      for (int p = 0; p < 64; ++p) {
+        more.push_back({{0.0015 + 0.0021 * (p % 8), 0.0015 + 0.0021 * (p / 8), 0.1 + 0.003 * (step / 20)},
+                        {},
+                        {},
+                        0.001,
+                        0,
+                        true});
+      }
+      fed.add_particles(more);
+    }
+    for (Engine* engine : {&alone, &fed}) {
+      engine->prepare_outer_step();
+      advance(*engine, 10);
+    }
+    contacts += alone.collect_report().touching_pairs;
+    (void)fed.collect_report();
+  }
+  EXPECT_GT(contacts, 1000);
+  EXPECT_EQ(fed.particles().count, 60 + 30 * 64);
+  auto of_fed = bits(fed);
+  const auto of_alone = bits(alone);
+  of_fed.resize(of_alone.size());
+  EXPECT_EQ(std::memcmp(of_fed.data(), of_alone.data(), of_alone.size() * sizeof(Real)), 0);
+}
+
+TEST(Feed, GoesOnAfterACheckpointAsIfNothingHadHappened) {
+  const tests::TemporaryFolder folder;
+  auto feed_setup = plate_feed(tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain);
+  feed_setup.diameter = NormalSizes{0.002, 0.0004, 0.001, 0.003};
+  feed_setup.rate = 0.1;
+  const auto setup = open_box(feed_setup);
+  Engine engine(setup);
+  Feed feed(feed_setup);
+  engine.set_particles({});
+  const auto file = folder.path() / "checkpoint.h5";
+  std::vector<Real> middle;
+  for (int step = 0; step < 1500; ++step) {
+    if (step == 900) {
+      engine.canonicalise();
+      core::CheckpointWriter writer(file);
+      engine.save(writer);
+      feed.save(writer, "feed");
+      writer.close();
+    }
+    outer_step(engine, feed, step);
+  }
+  Engine resumed(setup);
+  Feed resumed_feed(feed_setup);
+  core::CheckpointReader reader(file);
+  resumed.load(reader);
+  resumed_feed.load(reader, "feed");
+  for (int step = 900; step < 1500; ++step) outer_step(resumed, resumed_feed, step);
+  ASSERT_GT(engine.left_through_open_sides(), 100);
+  ASSERT_GT(engine.particles().count, 100);
+  EXPECT_EQ(resumed.left_through_open_sides(), engine.left_through_open_sides());
+  EXPECT_EQ(resumed_feed.fed_particles(), feed.fed_particles());
+  const auto one = bits(engine), other = bits(resumed);
+  ASSERT_EQ(one.size(), other.size());
+  EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(Real)), 0);
+  // What came in is here or has left: sums of a few hundred masses of 1e-5 kg, each rounded to 1e-16 of the sum.
+  EXPECT_NEAR(engine.entered_mass(), engine.left_mass() + engine.compute_totals().mass,
+              1e-13 * engine.entered_mass());
+  EXPECT_NEAR(engine.entered_mass(), feed.fed_mass(), 1e-13 * feed.fed_mass());
+  EXPECT_EQ(feed.fed_particles(), engine.left_through_open_sides() + engine.particles().count);
+}
+
+}  // namespace
+}  // namespace pellicle::dem
