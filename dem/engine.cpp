@@ -48,8 +48,8 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   next_id_ = static_cast<std::int32_t>(seeds.size());
   one_particle_material_ = true;
   take_stock(seeds);
-  if (start_count_ == 0) return;
-  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
+  if (largest_radius_ == 0) return;
+  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
   if (seeds.empty()) return;
   const auto place = Kokkos::create_mirror_view(particles_.position_radius);
   const auto motion = Kokkos::create_mirror_view(particles_.velocity_spin);
@@ -88,6 +88,7 @@ void Engine::begin_substep(core::Timers& timers) {
     if (!search_.empty()) build_lists();
     Kokkos::fence("dem::engine::list_built");
     list_valid_ = true;
+    steps_since_build_ = 0;
     ++builds_;
   }
   // The first kick takes the velocity from the start of the step to its middle only.
@@ -107,7 +108,7 @@ void Engine::begin_substep(core::Timers& timers) {
 
 void Engine::build_lists() {
   history_.pack(list_);
-  search_.front().build(particles_, setup_.time_step, list_);
+  search_.front().build(particles_, setup_.time_step, list_, work_);
   history_.unpack(list_);
   result_.springs = history_.slots();
   build_wall_list(particles_, list_, planes_, wall_list_);
@@ -117,6 +118,7 @@ void Engine::end_substep() {
   std::swap(result_.touching, result_.touching_new);
   started_ = true;
   ++substeps_;
+  if (++steps_since_build_ >= Displacement::most_steps) list_valid_ = false;
   gravity_impulse_ += step_.kick * moving_mass_ * setup_.gravity;
   volume_time_ += step_.kick * moving_volume_;
   if (flags_().list_outdated != 0) {
@@ -171,6 +173,19 @@ void Engine::stop_for_overlap(Real overlap) const {
                  " of the smaller radius, over the limit of " +
                  std::to_string(setup_.contacts.overlap_limit) +
                  " (contacts.overlap_limit); a larger youngs_modulus or a smaller particle_step may help");
+}
+
+std::size_t Engine::bytes() const {
+  std::size_t total = bytes_of(particles_.position_radius) + bytes_of(particles_.velocity_spin) +
+                      bytes_of(particles_.mass) + bytes_of(particles_.acceleration) +
+                      bytes_of(particles_.angular_acceleration);
+  total += bytes_of(work_) + bytes_of(result_.touching) + bytes_of(result_.touching_new) +
+           bytes_of(result_.report);
+  total += bytes_of(list_.offset) + bytes_of(list_.partner) + bytes_of(list_.displacement);
+  total += bytes_of(wall_list_.particle) + bytes_of(wall_list_.offset) + bytes_of(wall_list_.wall) +
+           bytes_of(wall_report_);
+  for (const NeighbourSearch& search : search_) total += search.bytes();
+  return total;
 }
 
 Real Engine::neighbours_per_particle() const {

@@ -136,6 +136,8 @@ class Engine {
   std::int64_t list_builds() const { return builds_; }
   /// Entries of the neighbour list now, over particles.
   Real neighbours_per_particle() const;
+  /// Device memory of all arrays: particles, forces, lists, what the search needs [bytes].
+  std::size_t bytes() const;
 
  private:
   void allocate(std::size_t n);
@@ -144,13 +146,13 @@ class Engine {
   void end_substep();
   void build_lists();
   void sort_memory();
+  void reorder(const DeviceArray<std::int32_t>& order, Index count);
   void remove_left();
   void take_stock(const std::vector<ParticleSeed>& seeds);
   [[noreturn]] void stop_for_overlap(Real overlap) const;
 
   EngineSetup setup_;
   Particles particles_;
-  Particles scratch_;
   DeviceArray<DevicePlane> planes_;
   WallList wall_list_;
   DeviceArray<WallReport> wall_report_;
@@ -159,7 +161,8 @@ class Engine {
   NeighbourList list_;
   ContactResult result_;
   ContactHistory history_;
-  DeviceArray<std::int32_t> touching_scratch_;
+  // Holds force and torque; while neither is needed, what the list search or a re-sort needs.
+  DeviceArray<Real> work_;
   MotionStep step_;
   MotionFlagsView flags_;
   bool list_valid_ = false;
@@ -177,8 +180,8 @@ class Engine {
   Real moving_mass_ = 0, moving_volume_ = 0;  // [kg], [m³], of the particles present
   // Of the particles at the start: they shape the cell grid, which must be the same after a restart.
   Real smallest_radius_ = 0, largest_radius_ = 0;  // [m]
-  std::int64_t start_count_ = 0;
   std::int64_t outer_steps_since_sort_ = 0;
+  std::int64_t steps_since_build_ = 0;
 };
 
 }  // namespace pellicle::dem

@@ -22,6 +22,12 @@ void ensure_size(DeviceArray<T>& array, std::size_t size, const char* label) {
   }
 }
 
+/// Device memory that an array holds [bytes].
+template <class T>
+std::size_t bytes_of(const DeviceArray<T>& array) {
+  return array.span() * sizeof(T);
+}
+
 /// Host copy of the part of an array that is in use.
 template <class T>
 auto host_copy(const DeviceArray<T>& array, Index count) {

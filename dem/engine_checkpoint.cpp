@@ -30,7 +30,6 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/started", std::int64_t{started_ ? 1 : 0});
   file.write("dem/smallest_radius", smallest_radius_);
   file.write("dem/largest_radius", largest_radius_);
-  file.write("dem/start_count", start_count_);
   file.write("dem/moving_mass", moving_mass_);
   file.write("dem/moving_volume", moving_volume_);
   file.write("dem/one_particle_material", std::int64_t{one_particle_material_ ? 1 : 0});
@@ -61,12 +60,11 @@ void Engine::load(core::CheckpointReader& file) {
   search_.clear();
   smallest_radius_ = file.read_double("dem/smallest_radius");
   largest_radius_ = file.read_double("dem/largest_radius");
-  start_count_ = file.read_int64("dem/start_count");
   moving_mass_ = file.read_double("dem/moving_mass");
   moving_volume_ = file.read_double("dem/moving_volume");
   one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
-  if (start_count_ > 0) {
-    search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_, start_count_);
+  if (largest_radius_ > 0) {
+    search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
   }
   if (n == 0) return;
   read_array(file, "dem/position_radius", particles_.position_radius);

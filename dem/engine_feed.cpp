@@ -61,12 +61,7 @@ void Engine::add_particles(const std::vector<ParticleSeed>& seeds) {
   std::vector<VelocitySpin> motion;
   std::vector<Real> mass;
   // The velocity is that at the time of the position; the half-step velocity behind it is that of free flight.
-  using Acceleration = std::decay_t<decltype(particles_.acceleration)>::value_type;
-  using Component = decltype(Acceleration::x);
-  const Vec3 free_flight = started_ ? setup_.gravity : Vec3{};
-  const Acceleration acceleration{static_cast<Component>(free_flight.x),
-                                  static_cast<Component>(free_flight.y),
-                                  static_cast<Component>(free_flight.z)};
+  const Vec3 free_flight = round_to_single(started_ ? setup_.gravity : Vec3{});
   for (const ParticleSeed& s : seeds) {
     const Real density = setup_.materials.at(static_cast<std::size_t>(s.material)).density;
     mass.push_back(density * (4.0 / 3.0) * std::numbers::pi * s.radius * s.radius * s.radius);
@@ -76,15 +71,13 @@ void Engine::add_particles(const std::vector<ParticleSeed>& seeds) {
     one_particle_material_ = one_particle_material_ && s.material == 0;
     if (s.fixed) continue;
     entered_mass_ += mass.back();
-    entered_momentum_ +=
-        mass.back() *
-        (s.velocity - (0.5 * setup_.time_step) * Vec3{acceleration.x, acceleration.y, acceleration.z});
+    entered_momentum_ += mass.back() * (s.velocity - (0.5 * setup_.time_step) * free_flight);
   }
   put(particles_.position_radius, first, place);
   put(particles_.velocity_spin, first, motion);
   put(particles_.mass, first, mass);
-  put(particles_.acceleration, first, std::vector<Acceleration>(seeds.size(), acceleration));
-  put(particles_.angular_acceleration, first, std::vector<Acceleration>(seeds.size()));
+  put(particles_.acceleration, first, std::vector<Vec3f>(seeds.size(), convert<float>(free_flight)));
+  put(particles_.angular_acceleration, first, std::vector<Vec3f>(seeds.size()));
   put(result_.touching, first, std::vector<std::int32_t>(seeds.size()));
   particles_.count = static_cast<Index>(total);
   const ParticleTotals totals = compute_totals();

@@ -1,9 +1,10 @@
 // The engine's memory: its arrays, their order in space, and particles that leave.
-#include <utility>
+#include <algorithm>
 
 #include "core/error.hpp"
 #include "dem/engine.hpp"
 #include "dem/engine_arrays.hpp"
+#include "dem/permute.hpp"
 
 namespace pellicle::dem {
 namespace {
@@ -11,18 +12,47 @@ namespace {
 /// Outer steps between two re-sorts of memory: neighbours drift apart slowly, a sort costs about one list build.
 constexpr std::int64_t sort_interval = 64;
 
-void permute(const Particles& from, const DeviceArray<std::int32_t>& touching_from,
-             const DeviceArray<std::int32_t>& order, const Particles& to,
-             const DeviceArray<std::int32_t>& touching_to) {
+/// Velocities and spins are put aside together, the rest of the entry after them, so that less scratch is needed.
+struct Motion {
+  Vec3 velocity, spin;
+};
+struct Identity {
+  Real inverse_mass;
+  std::int32_t material, id;
+};
+
+void permute_motion(const DeviceArray<VelocitySpin>& motion, const DeviceArray<std::int32_t>& order,
+                    Index count, const DeviceArray<Real>& scratch) {
+  auto* const moving = reinterpret_cast<Motion*>(scratch.data());
   Kokkos::parallel_for(
-      "dem::engine_memory::permute", DeviceRange(0, to.count), KOKKOS_LAMBDA(const Index slot) {
-        const Index p = order(slot);
-        to.position_radius(slot) = from.position_radius(p);
-        to.velocity_spin(slot) = from.velocity_spin(p);
-        to.mass(slot) = from.mass(p);
-        to.acceleration(slot) = from.acceleration(p);
-        to.angular_acceleration(slot) = from.angular_acceleration(p);
-        touching_to(slot) = touching_from(p);
+      "dem::engine_memory::gather_motion", DeviceRange(0, count), KOKKOS_LAMBDA(const Index slot) {
+        const VelocitySpin m = motion(order(slot));
+        moving[slot] = {m.velocity(), m.spin()};
+      });
+  // The particles' identity is still in the old order while this half of the entry is put back.
+  Kokkos::parallel_for(
+      "dem::engine_memory::put_back_motion", DeviceRange(0, count), KOKKOS_LAMBDA(const Index slot) {
+        const Motion from = moving[slot];
+        VelocitySpin& to = motion(slot);
+        to.vx = from.velocity.x;
+        to.vy = from.velocity.y;
+        to.vz = from.velocity.z;
+        to.wx = from.spin.x;
+        to.wy = from.spin.y;
+        to.wz = from.spin.z;
+      });
+  auto* const who = reinterpret_cast<Identity*>(scratch.data());
+  Kokkos::parallel_for(
+      "dem::engine_memory::gather_identity", DeviceRange(0, count), KOKKOS_LAMBDA(const Index slot) {
+        const VelocitySpin& m = motion(order(slot));
+        who[slot] = {m.inverse_mass, m.material, m.id};
+      });
+  Kokkos::parallel_for(
+      "dem::engine_memory::put_back_identity", DeviceRange(0, count), KOKKOS_LAMBDA(const Index slot) {
+        VelocitySpin& to = motion(slot);
+        to.inverse_mass = who[slot].inverse_mass;
+        to.material = who[slot].material;
+        to.id = who[slot].id;
       });
 }
 
@@ -78,62 +108,53 @@ Index rank_staying(const Domain& domain, const Particles& particles, const Devic
 }  // namespace
 
 void Engine::allocate(std::size_t n) {
-  const auto make = [n](Particles& p, const char* place, const char* motion, const char* mass,
-                        const char* acceleration, const char* angular) {
-    p.position_radius = make_array<PositionRadius>(place, n);
-    p.velocity_spin = make_array<VelocitySpin>(motion, n);
-    p.mass = make_array<Real>(mass, n);
-    p.acceleration = make_array<Vec3>(acceleration, n);
-    p.angular_acceleration = make_array<Vec3>(angular, n);
-    p.count = static_cast<Index>(n);
-  };
-  make(particles_, "dem::engine_memory::position_radius", "dem::engine_memory::velocity_spin",
-       "dem::engine_memory::mass", "dem::engine_memory::acceleration",
-       "dem::engine_memory::angular_acceleration");
-  make(scratch_, "dem::engine_memory::position_radius_scratch", "dem::engine_memory::velocity_spin_scratch",
-       "dem::engine_memory::mass_scratch", "dem::engine_memory::acceleration_scratch",
-       "dem::engine_memory::angular_acceleration_scratch");
-  result_.force = make_array<Vec3>("dem::engine_memory::force", n);
-  result_.torque = make_array<Vec3>("dem::engine_memory::torque", n);
+  particles_.position_radius = make_array<PositionRadius>("dem::engine_memory::position_radius", n);
+  particles_.velocity_spin = make_array<VelocitySpin>("dem::engine_memory::velocity_spin", n);
+  particles_.mass = make_array<Real>("dem::engine_memory::mass", n);
+  particles_.acceleration = make_array<Vec3f>("dem::engine_memory::acceleration", n);
+  particles_.angular_acceleration = make_array<Vec3f>("dem::engine_memory::angular_acceleration", n);
+  particles_.count = static_cast<Index>(n);
+  const std::size_t force_and_torque = 6 * n;
+  work_ = make_array<Real>("dem::engine_memory::work",
+                           std::max(force_and_torque, NeighbourSearch::scratch_size(n)));
+  result_.force = DeviceArray<Vec3>(reinterpret_cast<Vec3*>(work_.data()), n);
+  result_.torque = DeviceArray<Vec3>(reinterpret_cast<Vec3*>(work_.data()) + n, n);
   result_.touching = make_array<std::int32_t>("dem::engine_memory::touching", n);
   result_.touching_new = make_array<std::int32_t>("dem::engine_memory::touching_new", n);
   result_.report = make_array<BlockReport>("dem::engine_memory::report",
                                            static_cast<std::size_t>(contact_block_count(particles_.count)));
-  touching_scratch_ = make_array<std::int32_t>("dem::engine_memory::touching_scratch", n);
   history_.clear();
+  list_valid_ = false;
+}
+
+void Engine::reorder(const DeviceArray<std::int32_t>& order, Index count) {
+  permute_array(particles_.position_radius, order, count, work_);
+  permute_motion(particles_.velocity_spin, order, count, work_);
+  permute_array(particles_.mass, order, count, work_);
+  permute_array(particles_.acceleration, order, count, work_);
+  permute_array(particles_.angular_acceleration, order, count, work_);
+  permute_array(result_.touching, order, count, work_);
+  history_.pack(list_);
+  history_.reorder(order, particles_.count, count);
+  particles_.count = count;
   list_valid_ = false;
 }
 
 void Engine::sort_memory() {
   if (search_.empty()) return;
-  // A build yields the canonical order; the lists it also makes name particles by their old place and are dropped.
-  history_.pack(list_);
-  search_.front().build(particles_, setup_.time_step, list_);
-  scratch_.count = particles_.count;
-  permute(particles_, result_.touching, search_.front().order(), scratch_, touching_scratch_);
-  history_.reorder(search_.front().order(), particles_.count, particles_.count);
-  std::swap(particles_, scratch_);
-  std::swap(result_.touching, touching_scratch_);
-  list_valid_ = false;
+  search_.front().find_order(particles_, setup_.time_step, list_);
+  reorder(search_.front().order(), particles_.count);
   outer_steps_since_sort_ = 0;
 }
 
 void Engine::canonicalise() { sort_memory(); }
 
 void Engine::remove_left() {
-  const Index staying = rank_staying(setup_.domain, particles_, touching_scratch_);
-  const auto order =
-      make_array<std::int32_t>("dem::engine_memory::staying_order", static_cast<std::size_t>(staying));
-  Kokkos::deep_copy(order, Kokkos::subview(touching_scratch_, std::pair<Index, Index>(0, staying)));
-  left_ += particles_.count - staying;
+  const DeviceArray<std::int32_t>& order = result_.touching_new;  // free between substeps
   const Vec3 momentum = compute_totals().momentum;
-  scratch_.count = staying;
-  permute(particles_, result_.touching, order, scratch_, touching_scratch_);
-  history_.pack(list_);
-  history_.reorder(order, particles_.count, staying);
-  std::swap(particles_, scratch_);
-  std::swap(result_.touching, touching_scratch_);
-  list_valid_ = false;
+  const Index staying = rank_staying(setup_.domain, particles_, order);
+  left_ += particles_.count - staying;
+  reorder(order, staying);
   const ParticleTotals rest = compute_totals();
   left_momentum_ += momentum - rest.momentum;
   left_mass_ += moving_mass_ - rest.mass;

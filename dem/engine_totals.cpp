@@ -34,8 +34,9 @@ void sum_blocks(const Particles& particles, const Vec3& gravity, Real half_step,
           t.moment += mass * place.z;
           t.kinetic_energy += 0.5 * mass * norm_squared(v) + 0.5 * inertia * norm_squared(motion.spin());
           t.potential_energy -= mass * dot(gravity, place.position());
-          const Vec3 half_step_velocity = v - half_step * particles.acceleration(p);
-          const Vec3 half_step_spin = motion.spin() - half_step * particles.angular_acceleration(p);
+          const Vec3 half_step_velocity = v - half_step * convert<Real>(particles.acceleration(p));
+          const Vec3 half_step_spin =
+              motion.spin() - half_step * convert<Real>(particles.angular_acceleration(p));
           t.momentum += mass * half_step_velocity;
           t.angular_momentum += mass * cross(place.position(), half_step_velocity) + inertia * half_step_spin;
           t.largest_speed = Kokkos::max(t.largest_speed, norm(v));
@@ -71,7 +72,6 @@ ParticleTotals Engine::compute_totals() const {
 
 void Engine::take_stock(const std::vector<ParticleSeed>& seeds) {
   const LaterParticles& later = setup_.later;
-  start_count_ = static_cast<std::int64_t>(seeds.size()) + later.count;
   smallest_radius_ = later.count > 0 ? later.smallest_radius : seeds.empty() ? 0 : seeds.front().radius;
   largest_radius_ = later.count > 0 ? later.largest_radius : 0;
   for (const ParticleSeed& s : seeds) {

@@ -32,7 +32,7 @@ inline constexpr Real broken_speed = 1e4;
 
 /// Advances one particle. Between substeps `velocity_spin` holds v*, the velocity at the time of the position,
 /// predicted with the last acceleration: v* = h + a Δt/2, h the velocity half a step earlier. With the new force
-///   h ← h + a Δt,  x ← x + h Δt,  v* ← h + a Δt/2,
+///   h ← h + a Δt,  x ← x + h Δt,  v* ← h + a Δt/2 (this a rounded to single precision, as it is kept),
 /// which is velocity-Verlet for forces that depend on x, and second order for those that depend on v through v*.
 /// Momentum changes by exactly Σ F Δt, so the stock of a ledger is Σ m h.
 template <class FluidForce>
@@ -55,26 +55,36 @@ struct MotionKernel {
     const Vec3 acceleration = motion.inverse_mass * (contacts.force(p) + fluid) + step.gravity;
     const Real inverse_inertia = 2.5 * motion.inverse_mass / (place.radius * place.radius);
     const Vec3 angular_acceleration = inverse_inertia * contacts.torque(p);
-    const Vec3 velocity = motion.velocity() - half * particles.acceleration(p) + step.kick * acceleration;
-    const Vec3 spin =
-        motion.spin() - half * particles.angular_acceleration(p) + step.kick * angular_acceleration;
-    place.x += step.time_step * velocity.x;
-    place.y += step.time_step * velocity.y;
-    place.z += step.time_step * velocity.z;
-    motion.vx = velocity.x + half * acceleration.x;
-    motion.vy = velocity.y + half * acceleration.y;
-    motion.vz = velocity.z + half * acceleration.z;
-    motion.wx = spin.x + half * angular_acceleration.x;
-    motion.wy = spin.y + half * angular_acceleration.y;
-    motion.wz = spin.z + half * angular_acceleration.z;
+    const Vec3 velocity =
+        motion.velocity() - half * convert<Real>(particles.acceleration(p)) + step.kick * acceleration;
+    const Vec3 spin = motion.spin() - half * convert<Real>(particles.angular_acceleration(p)) +
+                      step.kick * angular_acceleration;
+    const Vec3 moved = step.time_step * velocity;
+    place.x += moved.x;
+    place.y += moved.y;
+    place.z += moved.z;
+    const Vec3 kept = round_to_single(acceleration);
+    const Vec3 kept_angular = round_to_single(angular_acceleration);
+    const Vec3 present = velocity + half * kept;
+    const Vec3 present_spin = spin + half * kept_angular;
+    motion.vx = present.x;
+    motion.vy = present.y;
+    motion.vz = present.z;
+    motion.wx = present_spin.x;
+    motion.wy = present_spin.y;
+    motion.wz = present_spin.z;
     particles.position_radius(p) = place;
     particles.velocity_spin(p) = motion;
-    particles.acceleration(p) = acceleration;
-    particles.angular_acceleration(p) = angular_acceleration;
-    const Vec3 moved = place.position() - list.built_at(p);
-    // Negated comparisons, so that NaN counts as outdated and as broken.
-    if (!(norm_squared(moved) <= list.allowance_squared(p))) {
+    particles.acceleration(p) = convert<float>(kept);
+    particles.angular_acceleration(p) = convert<float>(kept_angular);
+    Displacement since_build = list.displacement(p);
+    since_build.x += static_cast<float>(moved.x);
+    since_build.y += static_cast<float>(moved.y);
+    since_build.z += static_cast<float>(moved.z);
+    list.displacement(p) = since_build;
+    if (since_build.spent()) {
       flags().list_outdated = 1;  // every writer writes the same
+      // Negated, so that NaN counts as broken.
       if (!(norm_squared(velocity) < broken_speed * broken_speed))
         Kokkos::atomic_max(&flags().broken_particle, p);
     }

@@ -1,287 +1,277 @@
 #include "dem/neighbour_list.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <string>
 
+#include "core/error.hpp"
 #include "dem/engine_arrays.hpp"
 
 namespace pellicle::dem {
 namespace {
 
-struct CellGrid {
-  Domain domain;
-  Index3 cells;
-  Vec3 inverse_cell_size;
+/// Particles whose rows are searched by one work item and stored side by side.
+constexpr Index row_block = std::is_same_v<Device, Host> ? 64 : 1;
 
-  KOKKOS_INLINE_FUNCTION Index coordinate(int axis, Real x) const {
-    const auto i = static_cast<Index>(Kokkos::floor((x - domain.box.min[axis]) * inverse_cell_size[axis]));
-    return i < 0 ? 0 : (i >= cells[axis] ? cells[axis] - 1 : i);
-  }
-  KOKKOS_INLINE_FUNCTION Index cell(const PositionRadius& p) const {
-    return coordinate(0, p.x) + cells.x * (coordinate(1, p.y) + cells.y * coordinate(2, p.z));
-  }
-};
-
-void count_per_cell(const CellGrid& grid, const Particles& particles,
-                    const DeviceArray<std::int32_t>& cell_of, const DeviceArray<std::int32_t>& cell_fill) {
-  const auto place = particles.position_radius;
-  Kokkos::parallel_for(
-      "dem::neighbour_list::count_per_cell", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index p) {
-        const Index cell = grid.cell(place(p));
-        cell_of(p) = cell;
-        // Integer counts do not depend on the order of the additions.
-        Kokkos::atomic_inc(&cell_fill(cell));
-      });
+/// Blocks whose rows are searched before they are moved to their place. The rows of a round stay in the cache and the
+/// memory they need is small beside the lists; on a GPU a round has to keep all of it busy.
+Index blocks_per_round(Index blocks) {
+  if constexpr (!std::is_same_v<Device, Host>) return 1 << 17;
+  const Index busy = 8 * static_cast<Index>(Device().concurrency());
+  return std::max(busy, std::min<Index>(256, blocks / 16 + 1));
 }
 
-/// Exclusive prefix sum of count(0 … n), total in the last entry of offset.
-void offsets_from_counts(const DeviceArray<std::int32_t>& count, const DeviceArray<std::int32_t>& offset,
-                         Index n, const char* label) {
-  Kokkos::parallel_scan(
-      label, DeviceRange(0, n + 1), KOKKOS_LAMBDA(const Index i, std::int32_t& sum, const bool final) {
-        if (final) offset(i) = sum;
-        if (i < n) sum += count(i);
-      });
-}
-
-void scatter_to_cells(const Particles& particles, const DeviceArray<std::int32_t>& cell_of,
-                      const DeviceArray<std::int32_t>& cell_start, const DeviceArray<std::int32_t>& cell_fill,
-                      const DeviceArray<std::int32_t>& order) {
-  Kokkos::parallel_for(
-      "dem::neighbour_list::scatter_to_cells", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index p) {
-        const Index cell = cell_of(p);
-        const std::int32_t place = cell_start(cell) + Kokkos::atomic_fetch_add(&cell_fill(cell), 1);
-        order(place) = p;
-      });
-}
-
-/// The scatter leaves each cell in the order threads came by; sorting by id makes it the same every time.
-void sort_cells_by_id(const Particles& particles, Index cells, const DeviceArray<std::int32_t>& cell_start,
-                      const DeviceArray<std::int32_t>& order) {
+void set_allowances(const Particles& particles, Real reach_time, Real smallest, Real largest,
+                    const DeviceArray<Displacement>& displacement) {
   const auto motion = particles.velocity_spin;
   Kokkos::parallel_for(
-      "dem::neighbour_list::sort_cells_by_id", DeviceRange(0, cells), KOKKOS_LAMBDA(const Index cell) {
-        for (std::int32_t a = cell_start(cell) + 1; a < cell_start(cell + 1); ++a) {
-          const std::int32_t particle = order(a);
-          const std::int32_t id = motion(particle).id;
-          std::int32_t b = a;
-          for (; b > cell_start(cell) && motion(order(b - 1)).id > id; --b) order(b) = order(b - 1);
-          order(b) = particle;
-        }
+      "dem::neighbour_list::set_allowances", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index p) {
+        const VelocitySpin m = motion(p);
+        const Real travel = reach_time * Kokkos::sqrt(m.vx * m.vx + m.vy * m.vy + m.vz * m.vz);
+        const Real least = travel > smallest ? travel : smallest;
+        displacement(p) = {0, 0, 0, static_cast<float>(least < largest ? least : largest)};
       });
 }
 
-struct AllowanceRule {
-  Real reach_time;  ///< steps × time step [s]
-  Real smallest, largest;
-
-  KOKKOS_INLINE_FUNCTION Real operator()(const VelocitySpin& m) const {
-    const Real travel = reach_time * Kokkos::sqrt(m.vx * m.vx + m.vy * m.vy + m.vz * m.vz);
-    const Real allowance = travel > smallest ? travel : smallest;
-    return allowance < largest ? allowance : largest;
-  }
+/// x, y, z and reach in sorted order, one array after the other.
+struct SortedPlaces {
+  DeviceArray<Real> memory;
+  std::size_t stride;
+  KOKKOS_INLINE_FUNCTION Real* x() const { return memory.data(); }
+  KOKKOS_INLINE_FUNCTION Real* y() const { return memory.data() + stride; }
+  KOKKOS_INLINE_FUNCTION Real* z() const { return memory.data() + 2 * stride; }
+  KOKKOS_INLINE_FUNCTION Real* reach() const { return memory.data() + 3 * stride; }
 };
 
-void gather_sorted(const Particles& particles, const AllowanceRule& rule,
-                   const DeviceArray<std::int32_t>& order, const DeviceArray<PositionRadius>& sorted,
-                   const NeighbourList& list) {
+void gather_sorted(const Particles& particles, const DeviceArray<std::int32_t>& order,
+                   const DeviceArray<Displacement>& displacement, const SortedPlaces& sorted) {
   const auto place = particles.position_radius;
-  const auto motion = particles.velocity_spin;
-  const auto built_at = list.built_at;
-  const auto allowance_squared = list.allowance_squared;
   Kokkos::parallel_for(
       "dem::neighbour_list::gather_sorted", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index slot) {
         const Index p = order(slot);
-        PositionRadius entry = place(p);
-        const Real allowance = rule(motion(p));
-        built_at(p) = entry.position();
-        allowance_squared(p) = allowance * allowance;
-        entry.radius += allowance;
-        sorted(slot) = entry;
+        const PositionRadius at = place(p);
+        sorted.x()[slot] = at.x;
+        sorted.y()[slot] = at.y;
+        sorted.z()[slot] = at.z;
+        sorted.reach()[slot] = reach_of(at, displacement(p));
       });
 }
 
-/// Visits the runs of sorted slots that may hold a neighbour of the particle in `slot`, always in the same order.
-template <class Scan>
-KOKKOS_INLINE_FUNCTION void visit_runs(const CellGrid& grid, const DeviceArray<std::int32_t>& cell_start,
-                                       const PositionRadius& self, const Scan& scan) {
-  const Index3 n = grid.cells;
-  const Index3 periodic = grid.domain.periodic;
-  const Index ci = grid.coordinate(0, self.x);
-  const Index cj = grid.coordinate(1, self.y);
-  const Index ck = grid.coordinate(2, self.z);
-  // Along a periodic axis of fewer than three cells the neighbours on both sides are the same cell: visit it once.
-  const auto first = [](Index c, Index cells, Index repeats) {
-    return repeats != 0 ? (cells >= 3 ? c - 1 : Index{0}) : (c > 0 ? c - 1 : c);
-  };
-  const auto last = [](Index c, Index cells, Index repeats) {
-    return repeats != 0 ? (cells >= 3 ? c + 1 : cells - 1) : (c < cells - 1 ? c + 1 : c);
-  };
-  const auto wrapped = [](Index c, Index cells) { return c < 0 ? c + cells : (c >= cells ? c - cells : c); };
-  for (Index k = first(ck, n.z, periodic.z); k <= last(ck, n.z, periodic.z); ++k) {
-    for (Index j = first(cj, n.y, periodic.y); j <= last(cj, n.y, periodic.y); ++j) {
-      const Index row = n.x * (wrapped(j, n.y) + n.y * wrapped(k, n.z));
-      if (periodic.x == 0) {
-        // Cells of a row lie side by side in the sorted order: one run instead of three.
-        scan(cell_start(row + first(ci, n.x, 0)), cell_start(row + last(ci, n.x, 0) + 1));
-      } else {
-        for (Index i = first(ci, n.x, 1); i <= last(ci, n.x, 1); ++i) {
-          const Index cell = row + wrapped(i, n.x);
-          scan(cell_start(cell), cell_start(cell + 1));
+/// Rows of the particles of one block, one after the other, into the block's part of the staging memory.
+template <bool Repeats>
+struct FindRows {
+  CellGrid grid;
+  DeviceArray<std::int32_t> cell_start, order;
+  SortedPlaces sorted;
+  Particles particles;
+  NeighbourList list;
+  Index first_block;
+  DeviceArray<std::int32_t> staging, block_start;
+  std::int32_t capacity;  // entries that a block has room for
+
+  /// `largest` is the room that the fullest block needs.
+  KOKKOS_INLINE_FUNCTION void operator()(const Index b, std::int32_t& largest) const {
+    std::int32_t* const out = staging.data() + static_cast<std::size_t>(b) * capacity;
+    const std::int32_t* const particle = order.data();
+    std::int32_t n = 0;
+    const Index begin = (first_block + b) * row_block;
+    const Index end = Kokkos::min(begin + row_block, particles.count);
+    for (Index p = begin; p < end; ++p) {
+      PositionRadius self = particles.position_radius(p);
+      self.radius = reach_of(self, list.displacement(p));
+      const std::int32_t row = n;
+      visit_runs(grid, cell_start, self, [&](std::int32_t from, std::int32_t to) {
+        for (std::int32_t start = from; start < to; start += part) {
+          const std::int32_t m = Kokkos::min(part, to - start);
+          bool hit[part];
+          test(self, start, m, hit);
+          largest = Kokkos::max(largest, n + m);
+          if (n + m <= capacity) {
+            // Without a branch: whether a candidate is in reach cannot be predicted.
+            for (std::int32_t i = 0; i < m; ++i) {
+              const std::int32_t q = particle[start + i];
+              out[n] = q;
+              n += static_cast<std::int32_t>(hit[i]) & static_cast<std::int32_t>(q != p);
+            }
+          } else {
+            for (std::int32_t i = 0; i < m; ++i) n += hit[i] && particle[start + i] != p ? 1 : 0;
+          }
         }
+      });
+      list.offset(p) = n - row;
+    }
+    block_start(b) = n;
+  }
+
+ private:
+  static constexpr std::int32_t part = 64;
+
+  /// Which of the slots start … start + m may touch before the next build. Works on whole vectors: entries from m on
+  /// come from beyond and mean nothing.
+  KOKKOS_INLINE_FUNCTION void test(const PositionRadius& self, std::int32_t start, std::int32_t m,
+                                   bool* hit) const {
+    constexpr std::int32_t width = std::is_same_v<Device, Host> ? 8 : 1;
+    const Real* const x = sorted.x() + start;
+    const Real* const y = sorted.y() + start;
+    const Real* const z = sorted.z() + start;
+    const Real* const reach = sorted.reach() + start;
+    for (std::int32_t v = 0; v < m; v += width) {
+      for (std::int32_t i = v; i < v + width; ++i) {
+        Vec3 d{x[i] - self.x, y[i] - self.y, z[i] - self.z};
+        if constexpr (Repeats) d = grid.domain.shortest(d);
+        const Real r = self.radius + reach[i];
+        hit[i] = norm_squared(d) < r * r;
       }
     }
   }
-}
-
-/// Whether two entries of the sorted array may touch before the next build.
-template <bool Repeats>
-KOKKOS_INLINE_FUNCTION bool in_reach(const Domain& domain, const PositionRadius& a, const PositionRadius& b) {
-  Vec3 d{b.x - a.x, b.y - a.y, b.z - a.z};
-  if constexpr (Repeats) d = domain.shortest(d);
-  const Real reach = a.radius + b.radius;
-  return norm_squared(d) < reach * reach;
-}
-
-template <bool Repeats>
-struct CountPairs {
-  CellGrid grid;
-  DeviceArray<std::int32_t> cell_start, order;
-  DeviceArray<PositionRadius> sorted;
-  DeviceArray<std::int32_t> pair_count;
-
-  KOKKOS_INLINE_FUNCTION void operator()(const Index slot) const {
-    const PositionRadius self = sorted(slot);
-    const PositionRadius* const place = sorted.data();
-    const Domain& domain = grid.domain;
-    std::int32_t pairs = -1;  // the particle itself is within its own reach
-    visit_runs(grid, cell_start, self, [&](std::int32_t begin, std::int32_t end) {
-      // No branch: the outcome cannot be predicted.
-      for (std::int32_t o = begin; o < end; ++o) pairs += in_reach<Repeats>(domain, self, place[o]) ? 1 : 0;
-    });
-    const Index p = order(slot);
-    pair_count(p) = pairs < 0 ? 0 : pairs;  // a particle that is nowhere (NaN) is not even near itself
-  }
 };
 
-template <bool Repeats>
-struct FillPairs {
-  CellGrid grid;
-  DeviceArray<std::int32_t> cell_start, order;
-  DeviceArray<PositionRadius> sorted;
-  NeighbourList list;
+/// Block totals become the places where blocks begin; the last entry, and the return value, is their sum.
+std::int64_t scan_blocks(const DeviceArray<std::int32_t>& block_start, Index blocks) {
+  std::int64_t total = 0;
+  Kokkos::parallel_scan(
+      "dem::neighbour_list::scan_blocks", DeviceRange(0, blocks),
+      KOKKOS_LAMBDA(const Index b, std::int64_t& sum, const bool final) {
+        const std::int32_t count = block_start(b);
+        if (final) block_start(b) = static_cast<std::int32_t>(sum);
+        sum += count;
+      },
+      total);
+  return total;
+}
 
-  KOKKOS_INLINE_FUNCTION void operator()(const Index slot) const {
-    const PositionRadius self = sorted(slot);
-    const PositionRadius* const place = sorted.data();
-    const Domain& domain = grid.domain;
-    const Index p = order(slot);
-    std::int32_t entry = list.offset(p);
-    visit_runs(grid, cell_start, self, [&](std::int32_t begin, std::int32_t end) {
-      constexpr std::int32_t part = 64;
-      std::int32_t found[part + 1];
-      for (std::int32_t start = begin; start < end; start += part) {
-        const std::int32_t stop = start + part < end ? start + part : end;
+/// Moves the rows of a round to their place in the list; `base` is where the round begins.
+void place_rows(const NeighbourList& list, Index first_block, Index blocks, std::int32_t base,
+                const DeviceArray<std::int32_t>& staging, const DeviceArray<std::int32_t>& block_start,
+                std::int32_t capacity) {
+  Kokkos::parallel_for(
+      "dem::neighbour_list::place_rows", DeviceRange(0, blocks), KOKKOS_LAMBDA(const Index b) {
+        const std::int32_t start = base + block_start(b);
+        const Index begin = (first_block + b) * row_block;
+        const Index end = Kokkos::min(begin + row_block, list.count);
         std::int32_t n = 0;
-        for (std::int32_t o = start; o < stop; ++o) {
-          found[n] = o;
-          n += (in_reach<Repeats>(domain, self, place[o]) ? 1 : 0) & (o != slot ? 1 : 0);
+        for (Index p = begin; p < end; ++p) {
+          const std::int32_t length = list.offset(p);
+          list.offset(p) = start + n;
+          n += length;
         }
-        for (std::int32_t f = 0; f < n; ++f) list.partner(entry++) = order(found[f]);
-      }
-    });
-  }
-};
+        if (end == list.count) list.offset(end) = start + n;
+        const std::int32_t* const from = staging.data() + static_cast<std::size_t>(b) * capacity;
+        std::int32_t* const to = list.partner.data() + start;
+        for (std::int32_t i = 0; i < n; ++i) to[i] = from[i];
+      });
+}
 
-/// The last entry of an offsets array: the total.
-std::size_t read_total(const DeviceArray<std::int32_t>& offset, Index n) {
-  std::int32_t total = 0;
-  Kokkos::deep_copy(total, Kokkos::subview(offset, n));
-  return static_cast<std::size_t>(total);
+/// Room for `size` entries, of which `used` are kept.
+void grow_list(DeviceArray<std::int32_t>& partner, std::size_t used, std::size_t size) {
+  if (partner.extent(0) >= size) return;
+  DeviceArray<std::int32_t> grown(
+      Kokkos::view_alloc(Kokkos::WithoutInitializing, "dem::neighbour_list::partner"), size + size / 16 + 64);
+  if (used > 0) {
+    const std::pair<std::size_t, std::size_t> kept(0, used);
+    Kokkos::deep_copy(Kokkos::subview(grown, kept), Kokkos::subview(partner, kept));
+  }
+  partner = grown;
 }
 
 }  // namespace
 
 NeighbourSearch::NeighbourSearch(const Domain& domain, const SkinOptions& skin, Real smallest_radius,
-                                 Real largest_radius, std::int64_t particles)
-    : domain_(domain), skin_(skin), smallest_radius_(smallest_radius), largest_radius_(largest_radius) {
+                                 Real largest_radius)
+    : skin_(skin), smallest_radius_(smallest_radius), largest_radius_(largest_radius) {
+  grid_.domain = domain;
   const Real reach = 2 * largest_radius_ * (1 + skin_.largest_fraction);
   for (int axis = 0; axis < 3; ++axis) {
-    const Real length = domain_.length()[axis];
-    if (domain_.periodic[axis] != 0 && length < 2 * reach) {
+    if (domain.periodic[axis] != 0 && domain.length()[axis] < 2 * reach) {
       throw std::invalid_argument("a periodic domain must be at least " + std::to_string(2 * reach) +
                                   " m wide for these particles, so that none meets two images of another");
     }
-    cells_[axis] = static_cast<Index>(std::clamp(length / reach, 1.0, 1e6));
   }
-  // A few small particles in a large domain: wider cells, so that the grid does not cost more than they do.
-  const auto total = [this] { return static_cast<Real>(cells_.x) * cells_.y * cells_.z; };
-  const Real most = 4096 + 16 * static_cast<Real>(particles);
-  while (total() > most) {
-    const Real factor = std::min(0.9, std::cbrt(most / total()));
-    for (int axis = 0; axis < 3; ++axis)
-      cells_[axis] = std::max(1, static_cast<Index>(factor * cells_[axis]));
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    inverse_cell_size_[axis] = static_cast<Real>(cells_[axis]) / domain_.length()[axis];
-  }
+  set_levels(grid_, smallest_radius_, largest_radius_);
 }
 
-void NeighbourSearch::bin(const Particles& particles) {
-  const auto cells = static_cast<std::size_t>(cells_.x) * static_cast<std::size_t>(cells_.y) *
-                     static_cast<std::size_t>(cells_.z);
+void NeighbourSearch::find_order(const Particles& particles, Real time_step, NeighbourList& list) {
   const auto n = static_cast<std::size_t>(particles.count);
-  ensure_size(cell_of_, n, "dem::neighbour_list::cell_of");
+  wrap_periodic(grid_.domain, particles);
+  ensure_size(list.displacement, n, "dem::neighbour_list::displacement");
+  set_allowances(particles, skin_.steps * time_step, skin_.smallest_fraction * smallest_radius_,
+                 skin_.largest_fraction * largest_radius_, list.displacement);
+  measure_levels(grid_, particles, list.displacement);
+  set_cells(grid_);
+  ensure_size(cell_start_, static_cast<std::size_t>(grid_.cell_count()) + 1,
+              "dem::neighbour_list::cell_start");
   ensure_size(order_, n, "dem::neighbour_list::order");
-  ensure_size(sorted_, n, "dem::neighbour_list::sorted");
-  ensure_size(pair_count_, n, "dem::neighbour_list::pair_count");
-  ensure_size(cell_start_, cells + 1, "dem::neighbour_list::cell_start");
-  ensure_size(cell_fill_, cells, "dem::neighbour_list::cell_fill");
-  const CellGrid grid{domain_, cells_, inverse_cell_size_};
-  Kokkos::deep_copy(cell_fill_, 0);
-  count_per_cell(grid, particles, cell_of_, cell_fill_);
-  offsets_from_counts(cell_fill_, cell_start_, static_cast<Index>(cells),
-                      "dem::neighbour_list::cell_offsets");
-  Kokkos::deep_copy(cell_fill_, 0);
-  scatter_to_cells(particles, cell_of_, cell_start_, cell_fill_, order_);
-  sort_cells_by_id(particles, static_cast<Index>(cells), cell_start_, order_);
+  sort_into_cells(grid_, particles, cell_start_, order_);
 }
 
-void NeighbourSearch::build(const Particles& particles, Real time_step, NeighbourList& list) {
-  const auto n = static_cast<std::size_t>(particles.count);
-  wrap_periodic(domain_, particles);
-  bin(particles);
+void NeighbourSearch::build(const Particles& particles, Real time_step, NeighbourList& list,
+                            const DeviceArray<Real>& scratch) {
+  find_order(particles, time_step, list);
   list.count = particles.count;
-  ensure_size(list.offset, n + 1, "dem::neighbour_list::offset");
-  ensure_size(list.built_at, n, "dem::neighbour_list::built_at");
-  ensure_size(list.allowance_squared, n, "dem::neighbour_list::allowance_squared");
-  const CellGrid grid{domain_, cells_, inverse_cell_size_};
-  const AllowanceRule rule{skin_.steps * time_step, skin_.smallest_fraction * smallest_radius_,
-                           skin_.largest_fraction * largest_radius_};
-  gather_sorted(particles, rule, order_, sorted_, list);
-  const bool repeats = domain_.periodic.x + domain_.periodic.y + domain_.periodic.z != 0;
-  const DeviceRange all(0, particles.count);
-  if (repeats) {
-    Kokkos::parallel_for("dem::neighbour_list::count_periodic", all,
-                         CountPairs<true>{grid, cell_start_, order_, sorted_, pair_count_});
-  } else {
-    Kokkos::parallel_for("dem::neighbour_list::count", all,
-                         CountPairs<false>{grid, cell_start_, order_, sorted_, pair_count_});
+  ensure_size(list.offset, static_cast<std::size_t>(particles.count) + 1, "dem::neighbour_list::offset");
+  gather_sorted(particles, order_, list.displacement,
+                {scratch, sorted_stride(static_cast<std::size_t>(particles.count))});
+  find_rows(particles, list, scratch);
+}
+
+void NeighbourSearch::find_rows(const Particles& particles, NeighbourList& list,
+                                const DeviceArray<Real>& scratch) {
+  const SortedPlaces sorted{scratch, sorted_stride(static_cast<std::size_t>(particles.count))};
+  const Index blocks = (particles.count + row_block - 1) / row_block;
+  const Index round = std::min(blocks, blocks_per_round(blocks));
+  ensure_size(block_start_, static_cast<std::size_t>(round), "dem::neighbour_list::block_start");
+  block_capacity_ = std::max(block_capacity_, 12 * row_block + 64);
+  if (blocks == 0) Kokkos::deep_copy(Kokkos::subview(list.offset, std::pair<Index, Index>(0, 1)), 0);
+  std::int64_t total = 0;
+  for (Index first = 0; first < blocks; first += round) {
+    const Index present = std::min(round, blocks - first);
+    const DeviceRange range(0, present);
+    for (;;) {
+      ensure_size(staging_, static_cast<std::size_t>(round) * static_cast<std::size_t>(block_capacity_),
+                  "dem::neighbour_list::staging");
+      std::int32_t largest = 0;
+      // Dense and dilute blocks cost differently: threads take them as they come.
+      const Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>> dynamic(0, present,
+                                                                                   Kokkos::ChunkSize(1));
+      if (grid_.domain.repeats()) {
+        Kokkos::parallel_reduce("dem::neighbour_list::find_rows_periodic", dynamic,
+                                FindRows<true>{grid_, cell_start_, order_, sorted, particles, list, first,
+                                               staging_, block_start_, block_capacity_},
+                                Kokkos::Max<std::int32_t>(largest));
+      } else {
+        Kokkos::parallel_reduce("dem::neighbour_list::find_rows", dynamic,
+                                FindRows<false>{grid_, cell_start_, order_, sorted, particles, list, first,
+                                                staging_, block_start_, block_capacity_},
+                                Kokkos::Max<std::int32_t>(largest));
+      }
+      if (largest <= block_capacity_) break;
+      block_capacity_ = largest + largest / 4;
+    }
+    const std::int64_t before = total;
+    total += scan_blocks(block_start_, present);
+    if (total > std::numeric_limits<std::int32_t>::max() / 2) {
+      throw RunError(
+          "the neighbour lists have more than a thousand million entries; too many particles, or sizes "
+          "that differ too much");
+    }
+    // What the whole will need, as far as can be told by now.
+    const Real share = static_cast<Real>(first + present) / blocks;
+    const auto expected = static_cast<std::size_t>(static_cast<Real>(total) / share);
+    if (list.partner.extent(0) < static_cast<std::size_t>(total)) {
+      grow_list(list.partner, static_cast<std::size_t>(before), expected);
+    }
+    place_rows(list, first, present, static_cast<std::int32_t>(before), staging_, block_start_,
+               block_capacity_);
   }
-  offsets_from_counts(pair_count_, list.offset, particles.count, "dem::neighbour_list::pair_offsets");
-  ensure_size(list.partner, read_total(list.offset, particles.count), "dem::neighbour_list::partner");
-  if (repeats) {
-    Kokkos::parallel_for("dem::neighbour_list::fill_periodic", all,
-                         FillPairs<true>{grid, cell_start_, order_, sorted_, list});
-  } else {
-    Kokkos::parallel_for("dem::neighbour_list::fill", all,
-                         FillPairs<false>{grid, cell_start_, order_, sorted_, list});
-  }
+}
+
+std::size_t NeighbourSearch::bytes() const {
+  return bytes_of(cell_start_) + bytes_of(order_) + bytes_of(staging_) + bytes_of(block_start_);
 }
 
 void wrap_periodic(const Domain& domain, const Particles& particles) {
-  if (domain.periodic.x + domain.periodic.y + domain.periodic.z == 0) return;
+  if (!domain.repeats()) return;
   const auto place = particles.position_radius;
   Kokkos::parallel_for(
       "dem::neighbour_list::wrap_periodic", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index p) {

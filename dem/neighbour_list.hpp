@@ -1,32 +1,12 @@
 // Who may touch whom until somebody has moved too far: Verlet lists from a cell grid, on the device.
 #pragma once
 
-#include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
 #include "core/views.hpp"
+#include "dem/cell_grid.hpp"
 #include "dem/particles.hpp"
 
 namespace pellicle::dem {
-
-/// The box particles live in, and the axes along which it repeats.
-struct Domain {
-  Box box;
-  Index3 periodic{0, 0, 0};  ///< 1 along a periodic axis
-  Index3 open_min{0, 0, 0};  ///< 1 where particles may leave through the lower side of an axis
-  Index3 open_max{0, 0, 0};  ///< 1 where particles may leave through the upper side of an axis
-
-  KOKKOS_INLINE_FUNCTION Vec3 length() const { return box.max - box.min; }
-  /// Shortest image of a separation; plain separation along axes that do not repeat.
-  KOKKOS_INLINE_FUNCTION Vec3 shortest(Vec3 d) const {
-    const Vec3 l = length();
-    for (int axis = 0; axis < 3; ++axis) {
-      if (periodic[axis] == 0) continue;
-      if (d[axis] > 0.5 * l[axis]) d[axis] -= l[axis];
-      if (d[axis] < -0.5 * l[axis]) d[axis] += l[axis];
-    }
-    return d;
-  }
-};
 
 /// How far each particle may move before the lists must be rebuilt, in terms of what it is doing: a slow particle in
 /// the annulus gets little, a fast one in the spout more, so that one fast particle does not fatten every list.
@@ -39,43 +19,51 @@ struct SkinOptions {
 /// Full lists (each pair twice, once at each particle) in compressed rows. Row p is entries offset(p) … offset(p+1).
 /// A slot keeps its meaning until the next build, so laws with history can keep an array per slot.
 struct NeighbourList {
-  Index count = 0;                      ///< particles
-  DeviceArray<std::int32_t> offset;     ///< count + 1
-  DeviceArray<std::int32_t> partner;    ///< particle index, row by row, ordered by cell, then by id
-  DeviceArray<Vec3> built_at;           ///< position at the build [m]
-  DeviceArray<Real> allowance_squared;  ///< how far a particle may move, squared [m²]
+  Index count = 0;                         ///< particles
+  DeviceArray<std::int32_t> offset;        ///< count + 1
+  DeviceArray<std::int32_t> partner;       ///< particle index, row by row, ordered by cell, then by id
+  DeviceArray<Displacement> displacement;  ///< of every particle since the build
 };
 
-/// Scratch of the search, kept to spare allocations, and the canonical order of the particles.
+/// Finds pairs within reach; keeps its scratch to spare allocations, and the canonical order of the particles.
 class NeighbourSearch {
  public:
-  /// Radii [m] of the smallest and largest particle, and about how many there will be: the three shape the cell grid,
-  /// and with it the canonical order. Throws std::invalid_argument where a periodic axis is too short.
-  NeighbourSearch(const Domain& domain, const SkinOptions& skin, Real smallest_radius, Real largest_radius,
-                  std::int64_t particles);
+  /// Radii [m] of the smallest and largest particle. Throws std::invalid_argument where a periodic axis is too short.
+  NeighbourSearch(const Domain& domain, const SkinOptions& skin, Real smallest_radius, Real largest_radius);
 
-  /// Finds all pairs within reach; the result depends on positions, speeds and ids alone, not on the memory
-  /// order or the number of threads. Time step in s.
-  void build(const Particles& particles, Real time_step, NeighbourList& list);
+  /// Numbers that a build may write over, for so many particles: the engine lends memory that is free at that time.
+  static std::size_t scratch_size(std::size_t particles) { return 4 * sorted_stride(particles); }
 
-  /// Particle indices ordered by cell, then id, as of the last build: the order to sort memory by.
+  /// Finds all pairs within reach; which they are, and their order but for the numbering, depends on positions, speeds
+  /// and ids alone, not on the memory order or the number of threads. Time step in s; `scratch` has scratch_size
+  /// entries, on a cache line.
+  void build(const Particles& particles, Real time_step, NeighbourList& list,
+             const DeviceArray<Real>& scratch);
+
+  /// Brings particles back into the domain and finds their canonical order, by cell, then by id; spoils the list.
+  void find_order(const Particles& particles, Real time_step, NeighbourList& list);
+  /// Particle indices in canonical order, as of the last build or search for it: the order to sort memory by.
   const DeviceArray<std::int32_t>& order() const { return order_; }
 
- private:
-  void bin(const Particles& particles);
+  /// The cells of the last build.
+  const CellGrid& grid() const { return grid_; }
+  /// Device memory held [bytes].
+  std::size_t bytes() const;
 
-  Domain domain_;
+ private:
+  /// Room for whole vectors at the end.
+  static std::size_t sorted_stride(std::size_t particles) { return (particles + 15) / 8 * 8; }
+  void find_rows(const Particles& particles, NeighbourList& list, const DeviceArray<Real>& sorted);
+
   SkinOptions skin_;
   Real smallest_radius_;
   Real largest_radius_;
-  Index3 cells_{1, 1, 1};
-  Vec3 inverse_cell_size_{};
-  DeviceArray<std::int32_t> cell_of_;     // particle -> cell
-  DeviceArray<std::int32_t> cell_start_;  // cells + 1
-  DeviceArray<std::int32_t> cell_fill_;   // cells
-  DeviceArray<std::int32_t> order_;       // sorted slot -> particle
-  DeviceArray<PositionRadius> sorted_;    // x, y, z, radius + allowance in sorted order
-  DeviceArray<std::int32_t> pair_count_;  // particle -> row length
+  CellGrid grid_;
+  DeviceArray<std::int32_t> cell_start_;   // cells + 1
+  DeviceArray<std::int32_t> order_;        // sorted slot -> particle
+  DeviceArray<std::int32_t> staging_;      // rows of the blocks of one round
+  DeviceArray<std::int32_t> block_start_;  // in the entries of the round
+  std::int32_t block_capacity_ = 0;        // entries that a block has room for in staging_
 };
 
 /// Moves every particle that has left a periodic side back in.

@@ -7,6 +7,25 @@
 
 namespace pellicle::dem {
 
+using Vec3f = Vector3<float>;
+
+/// The same vector in another type.
+template <class To, class From>
+KOKKOS_INLINE_FUNCTION constexpr Vector3<To> convert(const Vector3<From>& a) {
+  return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};
+}
+
+/// The nearest number of single precision, as a Real. Done on the bits, because gcc 12 takes a conversion to float and
+/// back for the number itself where it vectorises both.
+KOKKOS_INLINE_FUNCTION Real round_to_single(Real x) {
+  constexpr std::uint64_t dropped = (std::uint64_t{1} << 29) - 1;
+  const auto bits = Kokkos::bit_cast<std::uint64_t>(x);
+  return Kokkos::bit_cast<Real>((bits + (dropped + 1) / 2) & ~dropped);
+}
+KOKKOS_INLINE_FUNCTION Vec3 round_to_single(const Vec3& a) {
+  return {round_to_single(a.x), round_to_single(a.y), round_to_single(a.z)};
+}
+
 /// What the contact search needs of a particle, in half a cache line: a partner is gathered with one load.
 struct alignas(32) PositionRadius {
   Real x, y, z;  ///< centre [m]
@@ -28,13 +47,15 @@ struct alignas(64) VelocitySpin {
 /// All particles of a run. Arrays are at least `count` long; entry p of each belongs to the same particle.
 /// The order changes when particles are re-sorted in space, which happens between outer steps only, so that
 /// per-particle arrays of other folders (drag coefficients, impulses) stay valid through the substeps.
+/// Accelerations are only there to tell the velocity at the time of the position from that half a step before; both ways
+/// use the same single-precision number, so nothing is lost.
 struct Particles {
   Index count = 0;
   DeviceArray<PositionRadius> position_radius;
   DeviceArray<VelocitySpin> velocity_spin;
-  DeviceArray<Real> mass;                  ///< [kg], also of a fixed particle
-  DeviceArray<Vec3> acceleration;          ///< [m/s2], of the last substep
-  DeviceArray<Vec3> angular_acceleration;  ///< [rad/s2], of the last substep
+  DeviceArray<Real> mass;                   ///< [kg], also of a fixed particle
+  DeviceArray<Vec3f> acceleration;          ///< [m/s2], of the last substep
+  DeviceArray<Vec3f> angular_acceleration;  ///< [rad/s2], of the last substep
 };
 
 }  // namespace pellicle::dem

@@ -13,7 +13,7 @@ struct NearWall {
   DeviceArray<DevicePlane> walls;
 
   KOKKOS_INLINE_FUNCTION Real reach(Index p) const {
-    return particles.position_radius(p).radius + Kokkos::sqrt(neighbours.allowance_squared(p));
+    return reach_of(particles.position_radius(p), neighbours.displacement(p));
   }
   KOKKOS_INLINE_FUNCTION bool operator()(Index p, Index wall, Real reach) const {
     return walls(wall).distance(particles.position_radius(p).position()) < reach;

@@ -113,8 +113,9 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   Kokkos::deep_copy(in.table, table_host);
   in.materials = static_cast<Index>(setup.materials.size());
   in.kick = setup.time_step;
-  NeighbourSearch search(setup.domain, setup.skin, smallest, largest, in.particles.count);
-  search.build(in.particles, setup.time_step, in.list);
+  NeighbourSearch search(setup.domain, setup.skin, smallest, largest);
+  search.build(in.particles, setup.time_step, in.list,
+               DeviceArray<Real>("test::contact_laws::scratch", NeighbourSearch::scratch_size(n)));
   WallList wall_list;
   build_wall_list(in.particles, in.list, walls, wall_list);
 

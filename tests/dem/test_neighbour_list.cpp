@@ -63,9 +63,10 @@ Rows build_rows(const Domain& domain, const SkinOptions& skin, const std::vector
   const auto [small, large] = std::minmax_element(
       cloud.place.begin(), cloud.place.end(),
       [](const PositionRadius& a, const PositionRadius& b) { return a.radius < b.radius; });
-  NeighbourSearch search(domain, skin, small->radius, large->radius, particles.count);
+  NeighbourSearch search(domain, skin, small->radius, large->radius);
   NeighbourList list;
-  search.build(particles, time_step, list);
+  search.build(particles, time_step, list,
+               DeviceArray<Real>("test::neighbour_list::scratch", NeighbourSearch::scratch_size(n)));
   WallList wall_list;
   build_wall_list(particles, list, make_device_planes(walls), wall_list);
   Kokkos::fence();
@@ -209,9 +210,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(NeighbourSearch, RefusesAPeriodicAxisThatHoldsTwoImages) {
   Domain domain{{{0, 0, 0}, {0.1, 0.0111, 0.1}}, {0, 1, 0}};
-  EXPECT_THROW(NeighbourSearch(domain, {}, 0.001, 0.002, 100), std::invalid_argument);
+  EXPECT_THROW(NeighbourSearch(domain, {}, 0.001, 0.002), std::invalid_argument);
   domain.box.max.y = 0.0113;  // two reaches are 4 × 2 mm × 1.4 = 11.2 mm
-  EXPECT_NO_THROW(NeighbourSearch(domain, {}, 0.001, 0.002, 100));
+  EXPECT_NO_THROW(NeighbourSearch(domain, {}, 0.001, 0.002));
 }
 
 /// Pairs that touch, found among all.

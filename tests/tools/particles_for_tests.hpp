@@ -22,8 +22,8 @@ inline dem::Particles make_particles(const std::vector<MadeUpParticle>& made_up,
   particles.position_radius = DeviceArray<dem::PositionRadius>("test::position_radius", size);
   particles.velocity_spin = DeviceArray<dem::VelocitySpin>("test::velocity_spin", size);
   particles.mass = DeviceArray<Real>("test::mass", size);
-  particles.acceleration = DeviceArray<Vec3>("test::acceleration", size);
-  particles.angular_acceleration = DeviceArray<Vec3>("test::angular_acceleration", size);
+  particles.acceleration = DeviceArray<dem::Vec3f>("test::acceleration", size);
+  particles.angular_acceleration = DeviceArray<dem::Vec3f>("test::angular_acceleration", size);
   const auto places = Kokkos::create_mirror_view(particles.position_radius);
   const auto motions = Kokkos::create_mirror_view(particles.velocity_spin);
   const auto masses = Kokkos::create_mirror_view(particles.mass);

@@ -10,7 +10,7 @@ struct FindId {
   DeviceArray<const dem::PositionRadius> position_radius;
   DeviceArray<const dem::VelocitySpin> velocity_spin;
   DeviceArray<const Real> mass;
-  DeviceArray<const Vec3> acceleration;
+  DeviceArray<const dem::Vec3f> acceleration;
   DeviceArray<ParticleSample> found;
   DeviceArray<Index> count;
 

@@ -11,7 +11,7 @@ struct ParticleSample {
   dem::PositionRadius position_radius{};
   dem::VelocitySpin velocity_spin{};
   Real mass = 0;
-  Vec3 acceleration;
+  dem::Vec3f acceleration;
 };
 
 /// Looks particles up by id. Owns the one entry in device memory that the answer passes through.

@@ -24,7 +24,7 @@ struct ListHits {
   DeviceArray<const dem::PositionRadius> position_radius;
   DeviceArray<const dem::VelocitySpin> velocity_spin;
   DeviceArray<const Real> mass;
-  DeviceArray<const Vec3> acceleration;
+  DeviceArray<const dem::Vec3f> acceleration;
   DeviceArray<Index> hit_bin;
   DeviceArray<Real> hit_value;
 

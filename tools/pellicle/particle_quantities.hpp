@@ -13,7 +13,7 @@ namespace pellicle::tools {
 /// Value of particle_quantities[quantity] (output_fields.hpp).
 KOKKOS_INLINE_FUNCTION Real particle_quantity(int quantity, const dem::PositionRadius& place,
                                               const dem::VelocitySpin& motion, Real mass,
-                                              const Vec3& acceleration) {
+                                              const dem::Vec3f& acceleration) {
   switch (quantity) {
     case 0:
       return motion.vx;
@@ -55,7 +55,7 @@ struct HostParticles {
   std::vector<dem::PositionRadius> position_radius;
   std::vector<dem::VelocitySpin> velocity_spin;
   std::vector<Real> mass;
-  std::vector<Vec3> acceleration;
+  std::vector<dem::Vec3f> acceleration;
   std::size_t count() const { return mass.size(); }
 };
 
