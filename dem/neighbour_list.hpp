@@ -47,6 +47,8 @@ class NeighbourSearch {
 
   /// The cells of the last build.
   const CellGrid& grid() const { return grid_; }
+  /// Slots of the canonical order at which its cells begin.
+  const DeviceArray<std::int32_t>& cell_start() const { return cell_start_; }
   /// Device memory held [bytes].
   std::size_t bytes() const;
 

@@ -21,7 +21,8 @@ struct Cloud {
   std::vector<VelocitySpin> motion;  // id = index
 };
 
-/// `count` points at random in (and, along open axes, a little out of) the box, with speeds from 0 to far too fast.
+/// `count` points at random in (and, along open axes, a little out of) the box, with radii as often small as large and
+/// speeds from 0 to far too fast.
 Cloud make_cloud(const Box& box, int count, Real radius_from, Real radius_to, Real outside, int seed) {
   Cloud cloud;
   const Vec3 length = box.max - box.min;
@@ -30,9 +31,10 @@ Cloud make_cloud(const Box& box, int count, Real radius_from, Real radius_to, Re
     const Vec3 v = random_vector(seed + 1, p);
     const Real share = 0.5 + 0.5 * random_vector(seed + 2, p).x;
     const Real stretch = 0.5 * (1 + outside);
-    cloud.place.push_back(
-        {box.min.x + length.x * (0.5 + stretch * x.x), box.min.y + length.y * (0.5 + stretch * x.y),
-         box.min.z + length.z * (0.5 + stretch * x.z), radius_from + share * (radius_to - radius_from)});
+    cloud.place.push_back({box.min.x + length.x * (0.5 + stretch * x.x),
+                           box.min.y + length.y * (0.5 + stretch * x.y),
+                           box.min.z + length.z * (0.5 + stretch * x.z),
+                           radius_from * std::pow(radius_to / radius_from, share)});
     const Real speed = std::pow(10.0, 3 * random_vector(seed + 2, p).y);
     cloud.motion.push_back({speed * v.x, speed * v.y, speed * v.z, 0, 0, 0, 1, 0, p});
   }
@@ -196,6 +198,18 @@ INSTANTIATE_TEST_SUITE_P(
         Situation{"Closed", {{{-0.01, 0.02, 0}, {0.04, 0.06, 0.03}}}, 600, 0.002, 0.002, 0},
         Situation{"PointsOutside", {{{-0.01, 0.02, 0}, {0.04, 0.06, 0.03}}}, 600, 0.002, 0.002, 0.4},
         Situation{"Polydisperse", {{{0, 0, 0}, {0.05, 0.04, 0.03}}}, 700, 0.0005, 0.002, 0},
+        Situation{"SizeRatio3", {{{0, 0, 0}, {0.05, 0.04, 0.03}}}, 900, 0.0008, 0.0024, 0.2},
+        Situation{"SizeRatio20", {{{0, 0, 0}, {0.05, 0.04, 0.03}}}, 1500, 0.0002, 0.004, 0.2},
+        Situation{"SizeRatio300", {{{0, 0, 0}, {0.05, 0.04, 0.03}}}, 1200, 0.00002, 0.006, 0},
+        // Two reaches of the largest are 22.4 mm: one cell of the coarsest level, twenty and more of the finest.
+        Situation{"PeriodicSizeRatio20",
+                  {{{0, -0.01, 0}, {0.0225, 0.0225, 0.03}}, {1, 1, 0}},
+                  900,
+                  0.0002,
+                  0.004,
+                  0},
+        Situation{
+            "PeriodicSizeRatio3", {{{0, 0, 0}, {0.02, 0.03, 0.0135}}, {1, 0, 1}}, 500, 0.0008, 0.0024, 0},
         Situation{"OneCell", {{{0, 0, 0}, {0.009, 0.008, 0.01}}}, 60, 0.001, 0.002, 0},
         Situation{"PeriodicTwoThreeSevenCells",
                   {{{0.1, 0, -0.02}, {0.112, 0.017, 0.02}}, {1, 1, 1}},
@@ -213,6 +227,79 @@ TEST(NeighbourSearch, RefusesAPeriodicAxisThatHoldsTwoImages) {
   EXPECT_THROW(NeighbourSearch(domain, {}, 0.001, 0.002), std::invalid_argument);
   domain.box.max.y = 0.0113;  // two reaches are 4 × 2 mm × 1.4 = 11.2 mm
   EXPECT_NO_THROW(NeighbourSearch(domain, {}, 0.001, 0.002));
+}
+
+/// What it takes to look for the neighbours of all particles: candidates tested, and runs of them looked up.
+struct Effort {
+  Real candidates = 0, runs = 0, entries = 0;
+  Index cells = 0;
+};
+
+/// Points at random, `solids_fraction` of the box in large spheres and as much in small ones.
+Effort measure_effort(Real size_ratio, Real solids_fraction, bool periodic, bool hierarchical) {
+  const Real length = 0.1;
+  const Real large = 0.01;
+  Cloud cloud;
+  for (const Real radius : {large, large / size_ratio}) {
+    const int count =
+        static_cast<int>(solids_fraction * std::pow(length, 3) / (4.0 / 3.0 * M_PI * std::pow(radius, 3)));
+    for (int k = 0; k < count; ++k) {
+      const auto p = static_cast<int>(cloud.place.size());
+      const Vec3 x = 0.5 * length * (random_vector(31, p) + Vec3{1, 1, 1});
+      cloud.place.push_back({x.x, x.y, x.z, radius});
+      cloud.motion.push_back({0, 0, 0, 0, 0, 0, 1, 0, p});
+    }
+  }
+  Particles particles;
+  const std::size_t n = cloud.place.size();
+  particles.count = static_cast<Index>(n);
+  particles.position_radius = DeviceArray<PositionRadius>("test::neighbour_list::place", n);
+  particles.velocity_spin = DeviceArray<VelocitySpin>("test::neighbour_list::motion", n);
+  std::copy(cloud.place.begin(), cloud.place.end(), particles.position_radius.data());
+  std::copy(cloud.motion.begin(), cloud.motion.end(), particles.velocity_spin.data());
+  const Domain domain{{{0, 0, 0}, {length, length, length}}, {periodic ? 1 : 0, periodic ? 1 : 0, 0}};
+  NeighbourSearch search(domain, {}, hierarchical ? large / size_ratio : large, large);
+  dem::NeighbourList list;
+  search.build(particles, 0, list,
+               DeviceArray<Real>("test::neighbour_list::scratch", NeighbourSearch::scratch_size(n)));
+  Kokkos::fence();
+  Effort effort;
+  for (std::size_t p = 0; p < n; ++p) {
+    PositionRadius self = particles.position_radius(p);
+    self.radius = reach_of(self, list.displacement(p));
+    visit_runs(search.grid(), search.cell_start(), self, [&](std::int32_t begin, std::int32_t end) {
+      effort.candidates += end - begin;
+      effort.runs += 1;
+    });
+  }
+  const auto total = static_cast<Real>(n);
+  effort.candidates /= total;
+  effort.runs /= total;
+  effort.entries = list.offset(n) / total;
+  effort.cells = search.grid().cell_count();
+  EXPECT_LE(effort.cells, 4 * particles.count + 256 * most_levels);
+  return effort;
+}
+
+TEST(NeighbourSearch, CostsAParticleNoMoreWhereSizesDiffer) {
+  // In operations, not in time. Among equal spheres of reach a, cells 2a wide: the run of a particle is at most 27 cells
+  // for the 4π/3 (2a)³ that hold its neighbours, so that at most 27·3/4π = 6.4 candidates, the particle itself and the
+  // scatter of small numbers apart, are tested for one that is in reach. Cells of another level fit a pair better or
+  // worse: the large neighbours of a small particle are looked for within 27 cells of 2A, of which (A + a)³ 4π/3 is of
+  // use, which is 8 times more; but they are few.
+  for (const bool periodic : {false, true}) {
+    const Effort equal = measure_effort(1.0001, 0.25, periodic, true);
+    for (const Real ratio : {3.0, 10.0}) {
+      const Effort effort = measure_effort(ratio, 0.25, periodic, true);
+      EXPECT_LT(effort.candidates, 6.5 * effort.entries + 20) << ratio;
+      EXPECT_LT(effort.candidates, 3 * equal.candidates) << ratio;
+      EXPECT_LT(effort.runs, 6 * equal.runs) << ratio;
+    }
+  }
+  // Without levels the same costs a hundred times as much: the test sees the difference.
+  const Effort levels = measure_effort(10, 0.05, false, true);
+  const Effort flat = measure_effort(10, 0.05, false, false);
+  EXPECT_GT(flat.candidates, 30 * levels.candidates);
 }
 
 /// Pairs that touch, found among all.
