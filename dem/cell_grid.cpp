@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pellicle::dem {
 namespace {
@@ -131,6 +132,8 @@ void measure_levels(CellGrid& grid, const Particles& particles,
   }
 }
 
+Index most_cells(Index particles) { return 256 + 2 * particles; }
+
 void set_cells(CellGrid& grid) {
   const Vec3 length = grid.box.max - grid.box.min;
   Index first_cell = 0;
@@ -145,7 +148,7 @@ void set_cells(CellGrid& grid) {
       const Real cells = length[axis] / (2 * level.largest_reach);
       level.cells[axis] = !(cells > 1) ? 1 : static_cast<Index>(std::min(cells, 1e6));
     }
-    const Real most = 256 + 4 * static_cast<Real>(level.count);
+    const auto most = static_cast<Real>(most_cells(level.count));
     while (total() > most) {
       const Real factor = std::min(0.9, std::cbrt(most / total()));
       for (int axis = 0; axis < 3; ++axis)
@@ -163,7 +166,7 @@ void set_cells(CellGrid& grid) {
 void sort_into_cells(const CellGrid& grid, const Particles& particles,
                      const DeviceArray<std::int32_t>& cell_start, const DeviceArray<std::int32_t>& order) {
   const Index cells = grid.cell_count();
-  Kokkos::deep_copy(cell_start, 0);
+  Kokkos::deep_copy(Kokkos::subview(cell_start, std::pair<Index, Index>(0, cells + 1)), 0);
   count_per_cell(grid, particles, cell_start);
   scan_cells(cell_start, cells);
   scatter_to_cells(grid, particles, cell_start, order);

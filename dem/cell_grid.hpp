@@ -176,6 +176,9 @@ void set_levels(CellGrid& grid, Real smallest_radius, Real largest_radius);
 void measure_levels(CellGrid& grid, const Particles& particles,
                     const DeviceArray<Displacement>& displacement);
 
+/// Cells that a level of so many particles has at most.
+Index most_cells(Index particles);
+
 /// Sets the cells of every level that has particles: as wide as two of its particles reach, wider where there are few
 /// particles in a large domain, so that cells never cost more than particles do.
 void set_cells(CellGrid& grid);

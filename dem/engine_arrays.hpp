@@ -18,7 +18,7 @@ template <class T>
 void ensure_size(DeviceArray<T>& array, std::size_t size, const char* label) {
   if (array.extent(0) < size) {
     array = DeviceArray<T>(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
-                           size + size / 4 + 16);
+                           size + size / 8 + 16);
   }
 }
 

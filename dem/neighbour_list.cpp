@@ -199,8 +199,9 @@ void NeighbourSearch::find_order(const Particles& particles, Real time_step, Nei
                  skin_.largest_fraction * largest_radius_, list.displacement);
   measure_levels(grid_, particles, list.displacement);
   set_cells(grid_);
-  ensure_size(cell_start_, static_cast<std::size_t>(grid_.cell_count()) + 1,
-              "dem::neighbour_list::cell_start");
+  // As many as there may ever be: their number changes from build to build.
+  const Index cells = most_cells(particles.count) + (grid_.levels - 1) * most_cells(0);
+  ensure_size(cell_start_, static_cast<std::size_t>(cells) + 1, "dem::neighbour_list::cell_start");
   ensure_size(order_, n, "dem::neighbour_list::order");
   sort_into_cells(grid_, particles, cell_start_, order_);
 }

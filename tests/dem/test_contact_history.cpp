@@ -61,7 +61,8 @@ TEST(ContactHistory, LoadsWithTheMindlinStiffnessUpToTheLimit) {
   // It slips after µ F_n/k_t = 7e-6 m, 700 steps, and then bears µ F_n.
   advance(engine, 1000);
   const Force sliding = force_on_heavy(engine);
-  EXPECT_NEAR(-sliding.tangential / sliding.normal, 0.3, 1e-12);
+  // The force is told from the acceleration, which is kept in single precision: 2^-24 of it in each component.
+  EXPECT_NEAR(-sliding.tangential / sliding.normal, 0.3, 1e-7);
 }
 
 TEST(ContactHistory, BeginsAnewAfterAGap) {

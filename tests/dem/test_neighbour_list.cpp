@@ -277,7 +277,7 @@ Effort measure_effort(Real size_ratio, Real solids_fraction, bool periodic, bool
   effort.runs /= total;
   effort.entries = list.offset(n) / total;
   effort.cells = search.grid().cell_count();
-  EXPECT_LE(effort.cells, 4 * particles.count + 256 * most_levels);
+  EXPECT_LE(effort.cells, 2 * particles.count + 256 * most_levels);
   return effort;
 }
 
