@@ -11,15 +11,16 @@
 namespace pellicle::dem {
 
 Engine::Engine(const EngineSetup& setup)
-    : setup_(setup), history_(setup.contacts.springs()), flags_("dem::engine::flags") {
+    : setup_(setup),
+      walls_(setup.walls, setup.domain.box),
+      history_(setup.contacts.springs()),
+      flags_("dem::engine::flags") {
   if (!(setup.time_step > 0)) throw std::invalid_argument("the particle time step must be positive");
   auto& options = setup_.contacts;
   std::visit([&](auto& law) { law.clip = options.clip; }, options.normal);
   std::visit([&](auto& law) { law.time_step = setup.time_step; }, options.tangential);
   std::visit([&](auto& law) { law.time_step = setup.time_step; }, options.rolling);
   if (std::holds_alternative<Linear>(options.normal)) require_stiffness(setup_.materials, setup_.pairs);
-  planes_ = make_device_planes(setup_.walls);
-  wall_report_ = make_array<WallReport>("dem::engine::wall_report", wall_blocks);
   const auto table = make_pair_table(setup_.materials, setup_.pairs, options.clip);
   table_ = make_array<PairParameters>("dem::engine::pair_table", table.size());
   const auto host = Kokkos::create_mirror_view(table_);
@@ -34,7 +35,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   std::vector<bool> of_particles(setup_.materials.size(), false);
   std::vector<bool> of_walls(setup_.materials.size(), false);
   for (const ParticleSeed& s : seeds) of_particles.at(static_cast<std::size_t>(s.material)) = true;
-  for (const PlaneWall& w : setup_.walls) of_walls.at(static_cast<std::size_t>(w.material)) = true;
+  for (const Wall& w : setup_.walls) of_walls.at(static_cast<std::size_t>(w.material)) = true;
   for (const int material : setup_.later.materials)
     of_particles.at(static_cast<std::size_t>(material)) = true;
   require_pairs(setup_.materials, setup_.pairs, of_particles, of_walls);
@@ -50,6 +51,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   take_stock(seeds);
   if (largest_radius_ == 0) return;
   search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
+  walls_.set_allowances(setup_.skin, setup_.time_step, smallest_radius_, largest_radius_);
   if (seeds.empty()) return;
   const auto place = Kokkos::create_mirror_view(particles_.position_radius);
   const auto motion = Kokkos::create_mirror_view(particles_.velocity_spin);
@@ -83,6 +85,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
 void Engine::advance(int count, core::Timers& timers) { advance(count, NoFluid{}, timers); }
 
 void Engine::begin_substep(core::Timers& timers) {
+  walls_.move_to(wall_time());
   if (!list_valid_) {
     const core::Timers::Scope scope(timers, core::Part::neighbours);
     if (!search_.empty()) build_lists();
@@ -90,6 +93,9 @@ void Engine::begin_substep(core::Timers& timers) {
     list_valid_ = true;
     steps_since_build_ = 0;
     ++builds_;
+  } else if (walls_.list_outdated()) {
+    const core::Timers::Scope scope(timers, core::Part::neighbours);
+    walls_.build_list(particles_, list_, 2);
   }
   // The first kick takes the velocity from the start of the step to its middle only.
   step_.kick = started_ ? setup_.time_step : 0.5 * setup_.time_step;
@@ -102,7 +108,7 @@ void Engine::begin_substep(core::Timers& timers) {
                            step_.kick,
                            one_particle_material_};
   compute_contact_forces(input, setup_.contacts, result_);
-  add_wall_contacts(input, wall_list_, planes_, setup_.contacts, result_, wall_report_);
+  walls_.add_contacts(input, setup_.contacts, result_);
   Kokkos::fence("dem::engine::contacts_done");
 }
 
@@ -111,7 +117,11 @@ void Engine::build_lists() {
   search_.front().build(particles_, setup_.time_step, list_, work_);
   history_.unpack(list_);
   result_.springs = history_.slots();
-  build_wall_list(particles_, list_, planes_, wall_list_);
+  walls_.build_list(particles_, list_, 1);
+}
+
+Real Engine::wall_time() const {
+  return walls_since_ < 0 ? Real(-1) : static_cast<Real>(substeps_ - walls_since_) * setup_.time_step;
 }
 
 void Engine::end_substep() {
@@ -154,16 +164,15 @@ ContactReport Engine::collect_report() {
   }
   sum.touching_pairs /= 2;
   Kokkos::deep_copy(result_.report, BlockReport{});
-  const auto walls = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_report_);
-  for (Index b = 0; b < wall_blocks; ++b) {
-    const WallReport& r = walls(b);
+  for (const WallReport& r : walls_.collect_reports()) {
     sum.largest_overlap = std::max(sum.largest_overlap, r.largest_overlap);
     sum.largest_depth = std::max(sum.largest_depth, r.largest_depth);
     sum.largest_approach_speed = std::max(sum.largest_approach_speed, r.largest_approach_speed);
     sum.wall_impulse += r.impulse;
     sum.touching_walls += r.touching;
+    sum.crowded_walls += r.crowded;
+    sum.walls.push_back({-r.impulse, r.angular_impulse, r.touching});
   }
-  Kokkos::deep_copy(wall_report_, WallReport{});
   if (!(sum.largest_overlap <= setup_.contacts.overlap_limit)) stop_for_overlap(sum.largest_overlap);
   return sum;
 }
@@ -182,8 +191,7 @@ std::size_t Engine::bytes() const {
   total += bytes_of(work_) + bytes_of(result_.touching) + bytes_of(result_.touching_new) +
            bytes_of(result_.report);
   total += bytes_of(list_.offset) + bytes_of(list_.partner) + bytes_of(list_.displacement);
-  total += bytes_of(wall_list_.particle) + bytes_of(wall_list_.offset) + bytes_of(wall_list_.wall) +
-           bytes_of(wall_report_);
+  total += walls_.bytes();
   for (const NeighbourSearch& search : search_) total += search.bytes();
   return total;
 }

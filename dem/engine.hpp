@@ -14,8 +14,7 @@
 #include "dem/motion.hpp"
 #include "dem/neighbour_list.hpp"
 #include "dem/particles.hpp"
-#include "dem/wall_contacts.hpp"
-#include "dem/walls.hpp"
+#include "dem/wall_system.hpp"
 
 namespace pellicle::dem {
 
@@ -43,11 +42,18 @@ struct EngineSetup {
   std::vector<Material> materials;
   std::vector<PairProperties> pairs;
   ContactOptions contacts;
-  std::vector<PlaneWall> walls;
+  std::vector<Wall> walls;
   Vec3 gravity{};      ///< [m/s²]
   Real time_step = 0;  ///< [s]
   SkinOptions skin{};
   LaterParticles later{};
+};
+
+/// What particles gave to a wall.
+struct WallLoad {
+  Vec3 impulse{};          ///< [N s]
+  Vec3 angular_impulse{};  ///< about the wall's torque_about [N m s]
+  std::int64_t touching = 0;
 };
 
 /// Contacts since the last call of `collect_report`, and how many touch now.
@@ -59,6 +65,8 @@ struct ContactReport {
   Vec3 support_impulse{};           ///< contacts to fixed particles [N s]
   std::int64_t touching_pairs = 0;
   std::int64_t touching_walls = 0;
+  std::int64_t crowded_walls = 0;  ///< times that a particle overlapped more surfaces than are compared
+  std::vector<WallLoad> walls;     ///< one for each wall of the set-up
 };
 
 /// Sums over all particles, in an order that does not depend on threads.
@@ -108,6 +116,11 @@ class Engine {
   /// The same without a fluid.
   void advance(int count, core::Timers& timers);
 
+  /// Walls move from the first substep on. `hold_walls` makes them rest in the place where they begin, until
+  /// `start_walls` starts their clock.
+  void hold_walls() { walls_since_ = -1; }
+  void start_walls() { walls_since_ = substeps_; }
+
   /// Contact figures since the last call; stops the run if an overlap went beyond the limit or a particle broke.
   ContactReport collect_report();
 
@@ -143,6 +156,8 @@ class Engine {
   void allocate(std::size_t n);
   void reserve(std::size_t capacity);
   void begin_substep(core::Timers& timers);
+  /// Time since walls began to move [s]; negative before.
+  Real wall_time() const;
   void end_substep();
   void build_lists();
   void sort_memory();
@@ -153,9 +168,7 @@ class Engine {
 
   EngineSetup setup_;
   Particles particles_;
-  DeviceArray<DevicePlane> planes_;
-  WallList wall_list_;
-  DeviceArray<WallReport> wall_report_;
+  WallSystem walls_;
   DeviceArray<PairParameters> table_;
   std::vector<NeighbourSearch> search_;  // none before there are particles
   NeighbourList list_;
@@ -169,6 +182,7 @@ class Engine {
   bool one_particle_material_ = true;
   bool started_ = false;
   std::int64_t substeps_ = 0;
+  std::int64_t walls_since_ = 0;  // substep at which walls began to move; -1: not yet
   std::int64_t builds_ = 0;
   std::int32_t next_id_ = 0;
   std::int64_t left_ = 0;

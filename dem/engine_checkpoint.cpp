@@ -18,6 +18,7 @@ void Engine::save(core::CheckpointWriter& file) const {
   const Index n = particles_.count;
   file.write("dem/count", std::int64_t{n});
   file.write("dem/substeps", substeps_);
+  file.write("dem/walls_since", walls_since_);
   file.write("dem/list_builds", builds_);
   file.write("dem/left", left_);
   file.write("dem/left_momentum", left_momentum_);
@@ -47,6 +48,7 @@ void Engine::load(core::CheckpointReader& file) {
   const auto n = file.read_int64("dem/count");
   allocate(static_cast<std::size_t>(n));
   substeps_ = file.read_int64("dem/substeps");
+  walls_since_ = file.read_int64("dem/walls_since");
   builds_ = file.read_int64("dem/list_builds");
   left_ = file.read_int64("dem/left");
   left_momentum_ = file.read_vec3("dem/left_momentum");
@@ -65,6 +67,7 @@ void Engine::load(core::CheckpointReader& file) {
   one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
   if (largest_radius_ > 0) {
     search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
+    walls_.set_allowances(setup_.skin, setup_.time_step, smallest_radius_, largest_radius_);
   }
   if (n == 0) return;
   read_array(file, "dem/position_radius", particles_.position_radius);

@@ -1,160 +1,100 @@
 #include "dem/wall_contacts.hpp"
 
 #include "dem/contact_force.hpp"
-#include "dem/engine_arrays.hpp"
+#include "dem/wall_candidates.hpp"
 
 namespace pellicle::dem {
 namespace {
-
-/// Whether a moving particle can reach a wall before the next build.
-struct NearWall {
-  Particles particles;
-  NeighbourList neighbours;
-  DeviceArray<DevicePlane> walls;
-
-  KOKKOS_INLINE_FUNCTION Real reach(Index p) const {
-    return reach_of(particles.position_radius(p), neighbours.displacement(p));
-  }
-  KOKKOS_INLINE_FUNCTION bool operator()(Index p, Index wall, Real reach) const {
-    return walls(wall).distance(particles.position_radius(p).position()) < reach;
-  }
-  KOKKOS_INLINE_FUNCTION bool any(Index p) const {
-    if (particles.velocity_spin(p).inverse_mass == 0) return false;
-    const Real far = reach(p);
-    for (Index w = 0; w < static_cast<Index>(walls.extent(0)); ++w) {
-      if ((*this)(p, w, far)) return true;
-    }
-    return false;
-  }
-};
-
-/// Writes the particles near a wall in ascending order, as many as there is room for; returns how many there are.
-std::int32_t collect_near(const NearWall& near, const DeviceArray<std::int32_t>& particle) {
-  const auto room = static_cast<std::int32_t>(particle.extent(0));
-  std::int32_t found = 0;
-  Kokkos::parallel_scan(
-      "dem::wall_contacts::collect_near", DeviceRange(0, near.particles.count),
-      KOKKOS_LAMBDA(const Index p, std::int32_t& rank, const bool final) {
-        if (!near.any(p)) return;
-        if (final && rank < room) particle(rank) = p;
-        ++rank;
-      },
-      found);
-  return found;
-}
-
-/// Row lengths, summed up to offsets; returns the total.
-std::int32_t find_offsets(const NearWall& near, const WallList& list) {
-  const auto walls = static_cast<Index>(near.walls.extent(0));
-  const auto particle = list.particle;
-  const auto offset = list.offset;
-  const Index count = list.count;
-  std::int32_t total = 0;
-  Kokkos::parallel_scan(
-      "dem::wall_contacts::offsets", DeviceRange(0, count + 1),
-      KOKKOS_LAMBDA(const Index k, std::int32_t& sum, const bool final) {
-        if (final) offset(k) = sum;
-        if (k == count) return;
-        const Index p = particle(k);
-        const Real reach = near.reach(p);
-        for (Index w = 0; w < walls; ++w) sum += near(p, w, reach) ? 1 : 0;
-      },
-      total);
-  return total;
-}
-
-void fill_rows(const NearWall& near, const WallList& list) {
-  const auto walls = static_cast<Index>(near.walls.extent(0));
-  Kokkos::parallel_for(
-      "dem::wall_contacts::fill_rows", DeviceRange(0, list.count), KOKKOS_LAMBDA(const Index k) {
-        const Index p = list.particle(k);
-        const Real reach = near.reach(p);
-        std::int32_t entry = list.offset(k);
-        for (Index w = 0; w < walls; ++w) {
-          if (near(p, w, reach)) list.wall(entry++) = w;
-        }
-      });
-}
 
 /// One block of the list a work item.
 template <class Laws>
 struct WallContactKernel {
   ContactInput in;
   WallList list;
-  DeviceArray<DevicePlane> walls;
+  WallGeometry walls;
   ContactResult out;
   DeviceArray<WallReport> reports;
   Laws laws;
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index block) const {
-    WallReport report = reports(block);
-    report.touching = 0;
+    const auto wall_count = static_cast<Index>(walls.body.extent(0));
+    for (Index w = 0; w < wall_count; ++w) reports(block * wall_count + w).touching = 0;
     const std::int64_t count = list.count;
     const auto begin = static_cast<Index>(block * count / wall_blocks);
     const auto end = static_cast<Index>((block + 1) * count / wall_blocks);
-    for (Index k = begin; k < end; ++k) add_contacts(k, report);
-    reports(block) = report;
+    for (Index k = begin; k < end; ++k) add_contacts(k, reports.data() + block * wall_count);
   }
 
-  KOKKOS_INLINE_FUNCTION void add_contacts(Index k, WallReport& report) const {
+  KOKKOS_INLINE_FUNCTION void add_contacts(Index k, WallReport* report) const {
     const Index p = list.particle(k);
     const PositionRadius self = in.particles.position_radius(p);
-    const VelocitySpin motion = in.particles.velocity_spin(p);
-    Vec3 force = out.force(p);
-    Vec3 torque = out.torque(p);
-    std::int32_t contacts = 0;
+    WallCandidates candidates;
     const std::int32_t end = list.offset(k + 1);
     for (std::int32_t slot = list.offset(k); slot < end; ++slot) {
-      const DevicePlane wall = walls(list.wall(slot));
-      const Real distance = wall.distance(self.position());
-      if (distance >= self.radius) continue;
-      const PairParameters& pair = in.table(motion.material * in.materials + wall.material);
-      const Vec3 n = -wall.normal;
-      const Vec3 dv = motion.velocity() - wall.velocity;
-      const ContactState c{self.radius - distance, self.radius, 1 / motion.inverse_mass, dot(dv, n)};
-      const Real compliance = spin_compliance_of(out.touching(p), motion.inverse_mass, self.radius);
-      ContactSprings springs;
-      const ContactForce f = laws(c, pair, n, dv, distance * motion.spin(), distance, motion.spin(),
-                                  compliance, 0.5 * motion.spin(), springs);
+      const std::int32_t s = list.surface(slot);
+      const ClosestPoint at = walls.closest(s, self.position());
+      if (at.distance < self.radius) candidates.insert({at, s, walls.wall_of(s)});
+    }
+    if (candidates.count() == 0) return;
+    if (candidates.crowded()) ++report[candidates[0].wall].crowded;
+    candidates.select(walls, self.radius);
+    const VelocitySpin motion = in.particles.velocity_spin(p);
+    const Real compliance = spin_compliance_of(out.touching(p), motion.inverse_mass, self.radius);
+    Vec3 force = out.force(p);
+    Vec3 torque = out.torque(p);
+    for (int i = 0; i < candidates.count(); ++i) {
+      const ContactForce f = contact(candidates[i], self, motion, compliance, report[candidates[i].wall]);
       force += f.force;
       torque += f.torque + f.rolling_torque;
-      ++contacts;
-      report.impulse += in.kick * f.force;
-      report.largest_overlap = Kokkos::max(report.largest_overlap, c.overlap / self.radius);
-      report.largest_depth = Kokkos::max(report.largest_depth, c.overlap);
-      report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
     }
-    if (contacts == 0) return;
     out.force(p) = force;
     out.torque(p) = torque;
-    out.touching_new(p) += contacts;
-    report.touching += contacts;
+    out.touching_new(p) += candidates.count();
+  }
+
+  /// The force of one wall on the particle, reported.
+  KOKKOS_INLINE_FUNCTION ContactForce contact(const WallCandidate& candidate, const PositionRadius& self,
+                                              const VelocitySpin& motion, Real compliance,
+                                              WallReport& report) const {
+    const ClosestPoint& at = candidate.at;
+    const WallBody& body = walls.body(candidate.wall);
+    const PairParameters& pair = in.table(motion.material * in.materials + body.material);
+    const Vec3& n = at.towards;
+    const Vec3 dv = motion.velocity() - walls.pose(candidate.wall).velocity_at(at.point, n);
+    const ContactState c{self.radius - at.distance, self.radius, 1 / motion.inverse_mass, dot(dv, n)};
+    // A wall that turns does not roll: the relative spin is that of the two bodies.
+    const Vec3 wall_spin = walls.pose(candidate.wall).spin;
+    const Vec3 relative_spin = motion.spin() - wall_spin;
+    const Vec3 mean_spin = 0.5 * (motion.spin() + wall_spin);
+    ContactSprings springs;
+    const ContactForce f = laws(c, pair, n, dv, at.distance * motion.spin(), at.distance, relative_spin,
+                                compliance, mean_spin, springs);
+    report.impulse += in.kick * f.force;
+    report.angular_impulse -= in.kick * (cross(at.point - body.torque_about, f.force) + f.rolling_torque);
+    ++report.touching;
+    report.largest_overlap = Kokkos::max(report.largest_overlap, c.overlap / self.radius);
+    report.largest_depth = Kokkos::max(report.largest_depth, c.overlap);
+    report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
+    return f;
   }
 };
 
-}  // namespace
-
-void build_wall_list(const Particles& particles, const NeighbourList& neighbours,
-                     const DeviceArray<DevicePlane>& walls, WallList& list) {
-  list.count = 0;
-  if (walls.extent(0) == 0) return;
-  const NearWall near{particles, neighbours, walls};
-  std::int32_t found = collect_near(near, list.particle);
-  if (found > static_cast<std::int32_t>(list.particle.extent(0))) {
-    ensure_size(list.particle, static_cast<std::size_t>(found), "dem::wall_contacts::particle");
-    found = collect_near(near, list.particle);
-  }
-  list.count = found;
-  ensure_size(list.offset, static_cast<std::size_t>(found) + 1, "dem::wall_contacts::offset");
-  const std::int32_t total = find_offsets(near, list);
-  ensure_size(list.wall, static_cast<std::size_t>(total), "dem::wall_contacts::wall");
-  fill_rows(near, list);
+KOKKOS_INLINE_FUNCTION void add_report(WallReport& sum, const WallReport& r) {
+  sum.largest_overlap = Kokkos::max(sum.largest_overlap, r.largest_overlap);
+  sum.largest_depth = Kokkos::max(sum.largest_depth, r.largest_depth);
+  sum.largest_approach_speed = Kokkos::max(sum.largest_approach_speed, r.largest_approach_speed);
+  sum.impulse += r.impulse;
+  sum.angular_impulse += r.angular_impulse;
+  sum.touching += r.touching;
+  sum.crowded += r.crowded;
 }
 
-void add_wall_contacts(const ContactInput& input, const WallList& list, const DeviceArray<DevicePlane>& walls,
+}  // namespace
+
+void add_wall_contacts(const ContactInput& input, const WallList& list, const WallGeometry& walls,
                        const ContactOptions& options, const ContactResult& result,
                        const DeviceArray<WallReport>& report) {
-  if (walls.extent(0) == 0) return;
+  if (walls.body.extent(0) == 0) return;
   std::visit(
       [&](const auto& normal, const auto& tangential, const auto& rolling) {
         using Laws = ContactLaws<std::decay_t<decltype(normal)>, std::decay_t<decltype(tangential)>,
@@ -165,6 +105,29 @@ void add_wall_contacts(const ContactInput& input, const WallList& list, const De
             WallContactKernel<Laws>{input, list, walls, result, report, Laws{normal, tangential, rolling}});
       },
       options.normal, options.tangential, options.rolling);
+}
+
+std::vector<WallReport> collect_wall_reports(const DeviceArray<WallReport>& report,
+                                             const DeviceArray<WallReport>& scratch) {
+  const auto walls = static_cast<Index>(report.extent(0)) / wall_blocks;
+  std::vector<WallReport> sums(static_cast<std::size_t>(walls));
+  if (walls == 0) return sums;
+  constexpr Index blocks = wall_blocks / report_parts;
+  Kokkos::parallel_for(
+      "dem::wall_contacts::collect", DeviceRange(0, report_parts * walls), KOKKOS_LAMBDA(const Index item) {
+        const Index part = item / walls;
+        const Index wall = item % walls;
+        WallReport sum;
+        for (Index b = part * blocks; b < (part + 1) * blocks; ++b) {
+          add_report(sum, report(b * walls + wall));
+          report(b * walls + wall) = WallReport{};
+        }
+        scratch(item) = sum;
+      });
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, scratch);
+  for (Index item = 0; item < report_parts * walls; ++item)
+    add_report(sums[static_cast<std::size_t>(item % walls)], host(item));
+  return sums;
 }
 
 }  // namespace pellicle::dem

@@ -7,7 +7,7 @@
 
 #include "dem/contact_laws.hpp"
 #include "dem/contact_loop.hpp"
-#include "dem/wall_contacts.hpp"
+#include "dem/wall_system.hpp"
 #include "tests/dem/bed.hpp"
 
 namespace pellicle::dem {
@@ -105,7 +105,7 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   }
   Kokkos::deep_copy(in.particles.position_radius, place);
   Kokkos::deep_copy(in.particles.velocity_spin, motion);
-  const auto walls = make_device_planes(setup.walls);
+  WallSystem walls(setup.walls, setup.domain.box);
   const auto table = make_pair_table(setup.materials, setup.pairs, setup.contacts.clip);
   in.table = DeviceArray<PairParameters>("test::contact_laws::table", table.size());
   const auto table_host = Kokkos::create_mirror_view(in.table);
@@ -116,8 +116,8 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   NeighbourSearch search(setup.domain, setup.skin, smallest, largest);
   search.build(in.particles, setup.time_step, in.list,
                DeviceArray<Real>("test::contact_laws::scratch", NeighbourSearch::scratch_size(n)));
-  WallList wall_list;
-  build_wall_list(in.particles, in.list, walls, wall_list);
+  walls.move_to(0);
+  walls.build_list(in.particles, in.list, 1);
 
   ContactOptions options = setup.contacts;
   options.tangential = ViscousCoulomb{setup.time_step};
@@ -131,8 +131,7 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
                                         static_cast<std::size_t>(contact_block_count(in.particles.count)));
   Kokkos::deep_copy(out.touching, touching);
   compute_contact_forces(in, options, out);
-  const DeviceArray<WallReport> wall_report("test::contact_laws::wall_report", wall_blocks);
-  add_wall_contacts(in, wall_list, walls, options, out, wall_report);
+  walls.add_contacts(in, options, out);
   Kokkos::fence();
   LoopResult result;
   const auto force = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, out.force);
@@ -143,10 +142,7 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   result.torque.assign(torque.data(), torque.data() + n);
   result.touching.assign(count.data(), count.data() + n);
   result.report = report(0);
-  // One particle is in one block, and every other block is empty.
-  const auto of_walls = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_report);
-  for (Index b = 0; b < wall_blocks; ++b)
-    if (of_walls(b).touching > 0) result.wall_report = of_walls(b);
+  if (walls.count() > 0) result.wall_report = walls.collect_reports().at(0);
   return result;
 }
 
@@ -234,7 +230,7 @@ TEST(ContactLoop, PairsAgreeWithHandCalculation) {
 TEST(ContactLoop, WallsAgreeWithHandCalculation) {
   auto setup = pair_setup();
   // A wall at z = 0 whose surface moves; the sphere of 1 mm stands 0.95 mm above it.
-  setup.walls = {{"belt", {0.02, 0.03, 0}, {0, 0, 1}, {0.01, -0.02, 0}, 1}};
+  setup.walls = {PlaneWall{"belt", {0.02, 0.03, 0}, {0, 0, 1}, {0.01, -0.02, 0}, 1}};
   struct WallCase {
     Vec3 velocity, spin, force, torque;
   };

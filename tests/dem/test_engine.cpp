@@ -322,8 +322,8 @@ void expect_to_continue_bit_for_bit(bool remembers) {
   setup.domain.open_max = {0, 0, 1};
   setup.gravity = {0, 5, -200};  // settles within the test
   tests::add_box_walls(setup);
-  setup.walls.push_back({"partition", {0.02, 0, 0}, {-1, 0, 0}, {}, 1});
-  setup.walls.push_back({"floor", {0, 0, 0}, {0, 0, 1}, {}, 1});
+  setup.walls.push_back(PlaneWall{"partition", {0.02, 0, 0}, {-1, 0, 0}, {}, 1});
+  setup.walls.push_back(PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1});
   if (remembers) tests::let_contacts_remember(setup);
   std::vector<Real> radii(150);
   for (std::size_t p = 0; p < 150; ++p) radii[p] = p % 4 == 0 ? 0.0015 : 0.0009;

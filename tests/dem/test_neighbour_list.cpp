@@ -8,7 +8,7 @@
 #include <ostream>
 #include <vector>
 
-#include "dem/wall_contacts.hpp"
+#include "dem/wall_list.hpp"
 #include "tests/dem/bed.hpp"
 
 namespace pellicle::dem {
@@ -70,12 +70,12 @@ Rows build_rows(const Domain& domain, const SkinOptions& skin, const std::vector
   search.build(particles, time_step, list,
                DeviceArray<Real>("test::neighbour_list::scratch", NeighbourSearch::scratch_size(n)));
   WallList wall_list;
-  build_wall_list(particles, list, make_device_planes(walls), wall_list);
+  build_wall_list(particles, list, 1, make_wall_geometry({walls.begin(), walls.end()}), wall_list);
   Kokkos::fence();
   const auto offset = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, list.offset);
   const auto partner = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, list.partner);
   const auto wall_offset = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_list.offset);
-  const auto wall = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_list.wall);
+  const auto wall = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_list.surface);
   const auto wall_particle = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, wall_list.particle);
   const auto canonical = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, search.order());
   Rows rows;

@@ -19,15 +19,12 @@ void choose_model(const std::string& name, const std::string& where, Family& fam
   family = core::make_model<Family>(index);
 }
 
-dem::PlaneWall make_side(const CaseSpec& spec, const WallSpec& wall, cfd::Side side) {
+dem::PlaneShape make_side(const CaseSpec& spec, cfd::Side side) {
   const int axis = cfd::axis_of(side);
   const bool upper = cfd::is_max(side);
-  dem::PlaneWall plane;
-  plane.name = wall.name;
-  plane.point = upper ? spec.domain.box.max : spec.domain.box.min;
+  dem::PlaneShape plane{};
   plane.normal[axis] = upper ? -1 : 1;
-  plane.velocity = wall.velocity;
-  plane.material = wall.material;
+  plane.offset = dot(plane.normal, upper ? spec.domain.box.max : spec.domain.box.min);
   return plane;
 }
 
@@ -71,6 +68,10 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
   setup.contacts.clip = spec.contacts.clip;
   setup.contacts.overlap_limit = spec.contacts.overlap_limit;
   for (const WallSpec& wall : spec.walls) {
+    dem::Wall made;
+    made.name = wall.name;
+    made.material = wall.material;
+    made.motion.surface_velocity = wall.velocity;
     if (wall.box) {
       for (int s = 0; s < 6; ++s) {
         const auto side = static_cast<cfd::Side>(s);
@@ -79,11 +80,12 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
           (s % 2 == 0 ? setup.domain.open_min : setup.domain.open_max)[s / 2] = 1;
           continue;
         }
-        setup.walls.push_back(make_side(spec, wall, side));
+        made.planes.push_back(make_side(spec, side));
       }
     } else if (wall.plane) {
-      setup.walls.push_back({wall.name, wall.plane->point, wall.plane->normal, wall.velocity, wall.material});
+      made.planes.push_back({wall.plane->normal, dot(wall.plane->normal, wall.plane->point)});
     }
+    setup.walls.push_back(made);
   }
   setup.gravity = spec.gravity;
   setup.time_step = particle_step;

@@ -30,8 +30,8 @@ inline dem::EngineSetup make_engine_setup(const Box& box, std::array<bool, 3> pe
     if (periodic[a]) continue;
     Vec3 normal;
     normal[axis] = 1;
-    setup.walls.push_back({"low", box.min, normal, {}, 0});
-    setup.walls.push_back({"high", box.max, -normal, {}, 0});
+    setup.walls.push_back(dem::PlaneWall{"low", box.min, normal, {}, 0});
+    setup.walls.push_back(dem::PlaneWall{"high", box.max, -normal, {}, 0});
   }
   return setup;
 }

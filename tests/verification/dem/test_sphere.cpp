@@ -63,7 +63,7 @@ Rebound measure_rebound(Real restitution, Real speed, bool pair, Real fraction) 
   const Real step = fraction * contact_time;
   auto setup = glass_setup({0.4, 0.1, 0.1}, step, restitution, 0.3, 0.01);
   setup.contacts.overlap_limit = 1;
-  setup.walls = {{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
+  setup.walls = {PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
   const int impacts = 16;
   std::vector<ParticleSeed> seeds;
   for (int i = 0; i < impacts; ++i) {
@@ -127,7 +127,7 @@ TEST(Sphere, ElasticImpactHasHertzsContactTimeAndOverlap) {
   const Real contact_time = 2.943275 * overlap / speed;
   const Real step = contact_time / 1000;
   auto setup = glass_setup({0.1, 0.1, 0.1}, step, 1);
-  setup.walls = {{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
+  setup.walls = {PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
   Engine engine(setup);
   engine.set_particles({{{0.05, 0.05, radius + 1.5 * speed * step}, {0, 0, -speed}, {}, radius, 0, false}});
   int touching = 0;
@@ -155,7 +155,7 @@ struct Resting {
 
   EngineSetup setup(Real sliding_friction, Real rolling_friction) const {
     auto result = glass_setup({1, 0.1, 0.1}, 1e-5, 0.9, sliding_friction, rolling_friction);
-    result.walls = {{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
+    result.walls = {PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1}};
     result.gravity = {0, 0, -g};
     return result;
   }
@@ -190,7 +190,7 @@ TEST(Sphere, SlidesUntilItRolls) {
 TEST(Sphere, IsTakenAlongByABelt) {
   const Resting rest;
   auto setup = rest.setup(0.3, 0);
-  setup.walls[0].velocity = {0, 0.1, 0};
+  setup.walls[0].motion.surface_velocity = {0, 0.1, 0};
   Engine engine(setup);
   engine.set_particles({rest.seed({0, 0, 0}, {0, 0, 0})});
   advance(engine, 2000);

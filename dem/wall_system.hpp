@@ -1,0 +1,59 @@
+// The walls of an engine: geometry, motion, the list of near particles, and what they have received.
+#pragma once
+
+#include <vector>
+
+#include "dem/wall_contacts.hpp"
+
+namespace pellicle::dem {
+
+class WallSystem {
+ public:
+  WallSystem() = default;
+  /// `domain` bounds the parts of unbounded walls that matter. Throws std::invalid_argument for too many triangles.
+  WallSystem(const std::vector<Wall>& walls, const Box& domain);
+
+  /// How far walls may move between two searches follows the rule for particles: radii [m] of the smallest and largest
+  /// one, time step in s.
+  void set_allowances(const SkinOptions& skin, Real time_step, Real smallest_radius, Real largest_radius);
+
+  /// Brings walls to `time` seconds after they began to move; negative: they rest where they begin.
+  void move_to(Real time);
+
+  /// Whether a wall has moved so far that particles which are not in the list may touch it.
+  bool list_outdated() const;
+  /// See build_wall_list; walls are where they were moved to last.
+  void build_list(const Particles& particles, const NeighbourList& neighbours, Real allowances);
+
+  void add_contacts(const ContactInput& input, const ContactOptions& options, const ContactResult& result);
+  /// Reports of each wall since the last call.
+  std::vector<WallReport> collect_reports();
+
+  /// Device memory of the list and the reports, without that of the geometry [bytes].
+  std::size_t bytes() const;
+  const WallGeometry& geometry() const { return geometry_; }
+  const WallList& list() const { return list_; }
+  std::size_t count() const { return motions_.size(); }
+
+ private:
+  struct HostMotion {
+    WallMotion motion;
+    bool turning;
+    Real arm;           ///< largest distance of a point from the axis [m]
+    Real top_speed;     ///< that shapes move with [m/s]
+    Real allowance;     ///< [m]
+    WallPose at_list;   ///< when the list was built
+    Real time_at_list;  ///< [s]
+  };
+  WallPose pose_of(const HostMotion& wall, Real time) const;
+
+  WallGeometry geometry_;
+  WallList list_;
+  DeviceArray<WallReport> report_;
+  DeviceArray<WallReport> report_scratch_;
+  std::vector<HostMotion> motions_;
+  bool any_moves_ = false;
+  Real time_ = -1;  // of the present poses [s]
+};
+
+}  // namespace pellicle::dem
