@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/model_variant.hpp"
+#include "tools/pellicle/build_walls.hpp"
 #include "tools/pellicle/case_checks.hpp"
 
 namespace pellicle::tools {
@@ -17,15 +18,6 @@ void choose_model(const std::string& name, const std::string& where, Family& fam
   const int index = core::find_model(core::model_list<Family>(), name);
   if (index < 0) throw InputError(where + ": no model named '" + name + "'");
   family = core::make_model<Family>(index);
-}
-
-dem::PlaneShape make_side(const CaseSpec& spec, cfd::Side side) {
-  const int axis = cfd::axis_of(side);
-  const bool upper = cfd::is_max(side);
-  dem::PlaneShape plane{};
-  plane.normal[axis] = upper ? -1 : 1;
-  plane.offset = dot(plane.normal, upper ? spec.domain.box.max : spec.domain.box.min);
-  return plane;
 }
 
 }  // namespace
@@ -68,24 +60,11 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
   setup.contacts.clip = spec.contacts.clip;
   setup.contacts.overlap_limit = spec.contacts.overlap_limit;
   for (const WallSpec& wall : spec.walls) {
-    dem::Wall made;
-    made.name = wall.name;
-    made.material = wall.material;
-    made.motion.surface_velocity = wall.velocity;
     if (wall.box) {
-      for (int s = 0; s < 6; ++s) {
-        const auto side = static_cast<cfd::Side>(s);
-        if (setup.domain.periodic[s / 2] != 0) continue;
-        if (std::find(wall.open.begin(), wall.open.end(), side) != wall.open.end()) {
-          (s % 2 == 0 ? setup.domain.open_min : setup.domain.open_max)[s / 2] = 1;
-          continue;
-        }
-        made.planes.push_back(make_side(spec, side));
-      }
-    } else if (wall.plane) {
-      made.planes.push_back({wall.plane->normal, dot(wall.plane->normal, wall.plane->point)});
+      for (const cfd::Side side : wall.open)
+        (cfd::is_max(side) ? setup.domain.open_max : setup.domain.open_min)[cfd::axis_of(side)] = 1;
     }
-    setup.walls.push_back(made);
+    setup.walls.push_back(make_wall(spec, wall));
   }
   setup.gravity = spec.gravity;
   setup.time_step = particle_step;

@@ -351,7 +351,14 @@ class Checker {
               fmt::format("{} m is outside the domain; {}", text(*probe.point), domain_text()));
       }
     } else if (spec_.particles.empty()) {
-      wrong(probe.where, probe.bed ? "bed" : "particle", "the case has no particles; point");
+      wrong(probe.where, probe.bed ? "bed" : (probe.wall ? "wall" : "particle"),
+            "the case has no particles; point");
+    } else if (probe.wall && std::none_of(spec_.walls.begin(), spec_.walls.end(),
+                                          [&](const WallSpec& w) { return w.name == *probe.wall; })) {
+      std::string names;
+      for (const auto& wall : spec_.walls) names += (names.empty() ? "" : ", ") + wall.name;
+      wrong(probe.where, "wall",
+            fmt::format("no wall \"{}\"; {}", *probe.wall, names.empty() ? "the case has none" : names));
     } else if (probe.particle && *probe.particle >= particle_count(spec_)) {
       wrong(probe.where, "particle",
             fmt::format("there is no particle {}; 0 to {}", *probe.particle, particle_count(spec_) - 1));

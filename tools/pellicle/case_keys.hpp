@@ -12,6 +12,7 @@ void describe_case(core::Keys& keys, CaseSpec& spec);
 
 // Its parts, one a file.
 void describe_materials_and_walls(core::Keys& keys, CaseSpec& spec);
+void describe_walls(core::Keys& keys, CaseSpec& spec);
 void describe_contacts(core::Keys& keys, CaseSpec& spec);
 void describe_particles(core::Keys& keys, CaseSpec& spec);
 void describe_gas(core::Keys& keys, CaseSpec& spec);
@@ -24,6 +25,9 @@ void describe_output(core::Keys& keys, CaseSpec& spec);
 void describe_box(core::Keys& keys, Box& box);
 /// The same, but `max` may also be level with `min`: a part of a side.
 void describe_flat_box(core::Keys& keys, Box& box);
+/// Round shapes: the ends of the axis, which are different points, and the radii.
+void describe_cylinder(core::Keys& keys, dem::CylinderRegion& cylinder);
+void describe_cone(core::Keys& keys, dem::ConeRegion& cone);
 /// A number for which 0 stands for "not given".
 void real_or_unset(core::Keys& keys, const core::Key& key, const core::RealRule& rule, Real& value);
 /// The name of a material for its index; one that is not known becomes a rigid one or is refused.

@@ -60,6 +60,7 @@ void describe_line(Keys& keys, LineSpec& line) {
 core::ModelList quantities_of(const ProbeSpec& probe) {
   if (probe.point) return gas_quantities;
   if (probe.particle) return particle_quantities;
+  if (probe.wall) return wall_quantities;
   return bed_quantities;
 }
 
@@ -68,8 +69,10 @@ void describe_probe(Keys& keys, ProbeSpec& probe) {
   keys.text({"name", "of the file probes/NAME.csv", Need::required}, TextRule::name, probe.name);
   keys.vector({"point", "gas at this point"}, {dimension::length}, probe.point);
   keys.whole({"particle", "one particle by its id"}, {0}, probe.particle);
+  keys.text({"wall", "forces and torques of the particles on the wall of this name"}, TextRule::name,
+            probe.wall);
   keys.mark({"bed", "all particles together"}, probe.bed);
-  keys.exactly_one({"point", "particle", "bed"});
+  keys.exactly_one({"point", "particle", "wall", "bed"});
   std::optional<std::vector<int>> positions;
   if (!probe.quantities.empty()) {
     positions.emplace();
@@ -132,8 +135,9 @@ void describe_output(Keys& keys, CaseSpec& spec) {
                                     describe_snapshots);
         inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {}, output.lines,
                              describe_line);
-        inner.list<ProbeSpec>({"probes", "values over time at points, of single particles, of the bed"}, {},
-                              output.probes, describe_probe);
+        inner.list<ProbeSpec>(
+            {"probes", "values over time at points, of single particles, of walls, of the bed"}, {},
+            output.probes, describe_probe);
         inner.list<HistogramSpec>({"histograms", "distributions over the particles"}, {}, output.histograms,
                                   describe_histogram);
       });

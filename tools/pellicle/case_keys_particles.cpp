@@ -27,47 +27,6 @@ void describe_material(Keys& keys, MaterialSpec& material) {
             {dimension::pure_number, {.min = 0, .max = 0.5}}, material.poisson_ratio);
 }
 
-void describe_plane(Keys& keys, PlaneSpec& plane) {
-  keys.vector({"point", "any point of the plane", Need::required}, {dimension::length}, plane.point);
-  keys.vector({"normal", "direction from the plane to the particles' side, of any length", Need::required},
-              {}, plane.normal);
-  if (!keys.reading() || !keys.given("normal")) return;
-  const Real length = norm(plane.normal);
-  if (length > 0) {
-    // A normal of length 1 is kept to the bit, so that the resolved file reads back as it is.
-    if (std::abs(length - 1) > 1e-15) plane.normal *= 1 / length;
-  } else {
-    keys.problem("normal", "it has no length; a direction such as [0, 0, 1]");
-  }
-}
-
-void describe_wall(Keys& keys, WallSpec& wall, CaseSpec& spec) {
-  static constexpr core::ModelInfo box_list[] = {{"domain", "the six sides of the domain"}};
-  if (keys.reading()) wall.where = keys.where();
-  keys.text({"name", "of the wall", Need::required}, TextRule::name, wall.name);
-  std::optional<int> box;
-  if (wall.box) box = 0;
-  keys.choice({"box", "the sides of the domain, except those of periodic directions"}, box_list, box);
-  wall.box = box.has_value();
-  keys.choices({"open", "sides of the box without wall: particles leave there and are counted"}, domain_sides,
-               Size{0, 6}, wall.open);
-  keys.section<PlaneSpec>({"plane", "an unbounded plane"}, wall.plane, describe_plane);
-  keys.exactly_one({"box", "plane"});
-  material_key(keys, {"material", "of the wall; one that is not among materials is rigid", Need::required},
-               spec, wall.material, true);
-  keys.vector({"velocity", "of the surface along itself, like a belt; the wall stays where it is"},
-              {dimension::velocity}, wall.velocity);
-  if (!keys.reading()) return;
-  if (wall.plane && !wall.open.empty()) keys.problem("open", "a plane has no sides; only with box");
-  const Real speed = norm(wall.velocity);
-  const auto moves_along = [&](const Vec3& normal) {
-    return std::abs(dot(wall.velocity, normal)) <= 1e-9 * speed;
-  };
-  if (wall.plane && !moves_along(wall.plane->normal)) {
-    keys.problem("velocity", "it leads through the plane; a velocity at right angles to the normal");
-  }
-}
-
 void describe_pair(Keys& keys, PairSpec& pair, CaseSpec& spec) {
   if (keys.reading()) pair.where = keys.where();
   std::optional<std::vector<std::string>> names;
@@ -105,8 +64,7 @@ void describe_materials_and_walls(Keys& keys, CaseSpec& spec) {
   }
   keys.named<MaterialSpec>({"materials", "solids by name"}, listed, describe_material);
   if (keys.reading()) spec.materials = listed;
-  keys.list<WallSpec>({"walls", "what particles bounce off"}, {}, spec.walls,
-                      [&](Keys& inner, WallSpec& wall) { describe_wall(inner, wall, spec); });
+  describe_walls(keys, spec);
 }
 
 void describe_contacts(Keys& keys, CaseSpec& spec) {

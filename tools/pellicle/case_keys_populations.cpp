@@ -87,6 +87,8 @@ void describe_axis(Keys& keys, Region& region) {
   }
 }
 
+}  // namespace
+
 void describe_cylinder(Keys& keys, dem::CylinderRegion& cylinder) {
   describe_axis(keys, cylinder);
   keys.real({"radius", "of the cylinder", Need::required}, {dimension::length, range::positive},
@@ -103,6 +105,8 @@ void describe_cone(Keys& keys, dem::ConeRegion& cone) {
     keys.problem("to_radius", "both radii are 0; one greater than 0");
   }
 }
+
+namespace {
 
 void describe_annulus(Keys& keys, dem::AnnulusRegion& annulus) {
   describe_axis(keys, annulus);

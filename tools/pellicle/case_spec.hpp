@@ -124,14 +124,45 @@ struct PlaneSpec {
   Vec3 normal;  ///< of length 1, into the domain
 };
 
+struct DiscSpec {
+  Vec3 centre;            ///< [m]
+  Vec3 normal;            ///< of length 1
+  Real radius = 0;        ///< [m]
+  Real inner_radius = 0;  ///< of the hole [m]
+};
+
+/// A unit that an STL file may be in, in the order of `length_units`.
+enum class LengthUnit { m, cm, mm };
+
+struct SpinSpec {
+  Real rate = 0;  ///< [rad/s]
+  Vec3 axis;      ///< of length 1
+  Vec3 through;   ///< a point of the axis [m]
+};
+
+struct VibrationSpec {
+  Vec3 amplitude;      ///< [m]
+  Real frequency = 0;  ///< [Hz]
+  Real phase = 0;      ///< [rad]
+};
+
 struct WallSpec {
   std::string where;
   std::string name;
-  bool box = false;             ///< the six sides of the domain; else a plane
+  bool box = false;             ///< the six sides of the domain; exactly one of this and the shapes below
   std::vector<cfd::Side> open;  ///< sides of the box that are left out: particles leave there
   std::optional<PlaneSpec> plane;
+  std::optional<DiscSpec> disc;
+  std::optional<dem::CylinderRegion> cylinder;
+  std::optional<dem::ConeRegion> cone;
+  std::optional<Box> block;        ///< a solid box
+  std::optional<std::string> stl;  ///< path of a file, absolute
+  LengthUnit unit = LengthUnit::m;
   int material = 0;  ///< index into CaseSpec::materials
   Vec3 velocity;     ///< of the surface; the wall stays in place, like a belt [m/s]
+  std::optional<SpinSpec> spin;
+  std::optional<VibrationSpec> vibration;
+  std::optional<Vec3> torque_about;  ///< [m]
 };
 
 /// A grid over the whole domain; see make_grid.
@@ -184,12 +215,13 @@ struct LineSpec {
   WindowSpec average;
 };
 
-/// A time series at a point, of one particle, or of the whole bed.
+/// A time series at a point, of one particle, of a wall, or of the whole bed.
 struct ProbeSpec {
   std::string where;
   std::string name;
-  std::optional<Vec3> point;      ///< exactly one of the three is set [m]
-  std::optional<Index> particle;  ///< id
+  std::optional<Vec3> point;        ///< exactly one of the four is set [m]
+  std::optional<Index> particle;    ///< id
+  std::optional<std::string> wall;  ///< name
   bool bed = false;
   std::vector<std::string> quantities;
   Real every = 1e-3;  ///< [s]

@@ -20,6 +20,8 @@ constexpr core::ModelInfo side_list[] = {{"left", "smallest x"},   {"right", "la
                                          {"front", "smallest y"},  {"back", "largest y"},
                                          {"bottom", "smallest z"}, {"top", "largest z"}};
 
+constexpr core::ModelInfo length_unit_list[] = {{"m", "metre"}, {"cm", "centimetre"}, {"mm", "millimetre"}};
+
 constexpr core::ModelInfo fill_pattern_list[] = {
     {"lattice", "cubic, bottom layer first; up to a solids fraction of 0.52"},
     {"random",
@@ -35,12 +37,13 @@ constexpr std::array<core::ModelInfo, N + M> join(const std::array<core::ModelIn
   return joined;
 }
 constexpr auto line_quantity_list = join(particle_quantities, gas_quantities);
-constexpr auto probe_quantity_list = join(line_quantity_list, bed_quantities);
+constexpr auto probe_quantity_list = join(join(line_quantity_list, bed_quantities), wall_quantities);
 
 }  // namespace
 
 constinit const core::ModelList axes = axis_list;
 constinit const core::ModelList domain_sides = side_list;
+constinit const core::ModelList length_units = length_unit_list;
 constinit const core::ModelList fill_patterns = fill_pattern_list;
 constinit const core::ModelList normal_contact_models = core::model_list<dem::NormalLaw>();
 constinit const core::ModelList tangential_contact_models = core::model_list<dem::TangentialLaw>();
@@ -74,6 +77,7 @@ const std::vector<ModelFamily>& quantity_families() {
        particle_quantities},
       {"quantities.gas", "Of the gas, for lines and probes of a point", gas_quantities},
       {"quantities.bed", "Of the whole bed, for probes", bed_quantities},
+      {"quantities.wall", "Of a wall, for probes; means over the time since the row before", wall_quantities},
   };
   return families;
 }

@@ -81,6 +81,17 @@ inline constexpr std::array<core::ModelInfo, 11> bed_quantities{{
     {"solids_volume", "volume of all particles [m3]"},
 }};
 
+/// Columns of a wall probe: what particles do to the wall, averaged since the row before.
+inline constexpr std::array<core::ModelInfo, 7> wall_quantities{{
+    {"wall_force_x", "x component of the force of the particles on the wall [N]"},
+    {"wall_force_y", "y component of the force of the particles on the wall [N]"},
+    {"wall_force_z", "z component of the force of the particles on the wall [N]"},
+    {"wall_torque_x", "x component of the torque of the particles on the wall [N m]"},
+    {"wall_torque_y", "y component of the torque of the particles on the wall [N m]"},
+    {"wall_torque_z", "z component of the torque of the particles on the wall [N m]"},
+    {"wall_contacts", "contacts of particles with the wall at the moment of the row [-]"},
+}};
+
 /// All quantities a line may show: particle_quantities, then gas_quantities.
 std::string line_quantity_names();
 

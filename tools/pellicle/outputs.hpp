@@ -30,8 +30,14 @@ class Outputs {
   void flush();
 
   /// The averages so far.
-  void save(core::CheckpointWriter& checkpoint) const { lines_.save(checkpoint); }
-  void load(const core::CheckpointReader& checkpoint) { lines_.load(checkpoint); }
+  void save(core::CheckpointWriter& checkpoint) const {
+    lines_.save(checkpoint);
+    probes_.save(checkpoint);
+  }
+  void load(const core::CheckpointReader& checkpoint) {
+    lines_.load(checkpoint);
+    probes_.load(checkpoint);
+  }
 
  private:
   const ResultsFolder& folder_;

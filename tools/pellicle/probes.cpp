@@ -30,6 +30,7 @@ std::vector<int> find_all(core::ModelList known, const ProbeSpec& spec) {
 core::ModelList known_quantities(const ProbeSpec& spec) {
   if (spec.bed) return bed_quantities;
   if (spec.particle) return particle_quantities;
+  if (spec.wall) return wall_quantities;
   return gas_quantities;
 }
 
@@ -52,6 +53,22 @@ Index cell_of(const ProbeSpec& spec, const CartesianGrid* grid) {
   return grid->index(grid->locate(0, at.x), grid->locate(1, at.y), grid->locate(2, at.z));
 }
 
+/// Entry of wall_quantities: means over `interval`, of which there is none at the first row.
+Real wall_quantity(int quantity, const WallFigures& now, const WallFigures& before, Real interval) {
+  if (quantity == 6) return static_cast<Real>(now.contacts);
+  const Vec3 given =
+      quantity < 3 ? now.impulse - before.impulse : now.angular_impulse - before.angular_impulse;
+  return interval > 0 ? given[quantity % 3] / interval : 0;
+}
+
+const WallFigures& find_wall(const OutputState& state, const std::string& name) {
+  static const WallFigures none;
+  if (state.walls == nullptr) return none;
+  const auto found = std::find_if(state.walls->begin(), state.walls->end(),
+                                  [&](const WallFigures& wall) { return wall.name == name; });
+  return found == state.walls->end() ? none : *found;
+}
+
 }  // namespace
 
 const HostParticles& OutputState::host_particles() const {
@@ -69,8 +86,13 @@ Probes::Probes(const std::vector<ProbeSpec>& specs, core::TimeControl& time, con
     const core::Schedule schedule = spec.every > 0
                                         ? time.schedule(spec.every, "output.probes." + spec.name + ".every")
                                         : core::Schedule{1};
-    probes_.push_back({spec, schedule, std::move(quantities), cell,
-                       core::CsvSeries(folder.csv("probes", spec.name), probe_header(spec), resume_time)});
+    probes_.push_back({spec,
+                       schedule,
+                       std::move(quantities),
+                       cell,
+                       core::CsvSeries(folder.csv("probes", spec.name), probe_header(spec), resume_time),
+                       {},
+                       0});
   }
 }
 
@@ -89,6 +111,12 @@ void Probes::append(Probe& probe, const OutputState& state) {
                                               particle.mass, particle.acceleration)
                           : std::nan(""));
     }
+  } else if (probe.spec.wall) {
+    const WallFigures& now = find_wall(state, *probe.spec.wall);
+    for (const int quantity : probe.quantities)
+      row.push_back(wall_quantity(quantity, now, probe.before, state.time - probe.time_before));
+    probe.before = now;
+    probe.time_before = state.time;
   } else {
     for (const int quantity : probe.quantities) row.push_back(gas_quantity(*state.gas, quantity, probe.cell));
   }
@@ -103,6 +131,27 @@ void Probes::sample(const OutputState& state) {
 
 void Probes::flush() {
   for (auto& probe : probes_) probe.file.flush();
+}
+
+void Probes::save(core::CheckpointWriter& checkpoint) const {
+  for (const auto& probe : probes_) {
+    if (!probe.spec.wall) continue;
+    const std::string path = "probes/" + probe.spec.name;
+    checkpoint.write(path + "/time", probe.time_before);
+    checkpoint.write(path + "/impulse", probe.before.impulse);
+    checkpoint.write(path + "/angular_impulse", probe.before.angular_impulse);
+  }
+}
+
+void Probes::load(const core::CheckpointReader& checkpoint) {
+  for (auto& probe : probes_) {
+    const std::string path = "probes/" + probe.spec.name;
+    // The first row of a probe that is new with this run is a mean since t = 0.
+    if (!probe.spec.wall || !checkpoint.has(path + "/time")) continue;
+    probe.time_before = checkpoint.read_double(path + "/time");
+    probe.before.impulse = checkpoint.read_vec3(path + "/impulse");
+    probe.before.angular_impulse = checkpoint.read_vec3(path + "/angular_impulse");
+  }
 }
 
 Histograms::Histograms(const std::vector<HistogramSpec>& specs, core::TimeControl& time,

@@ -1,4 +1,4 @@
-// Time series: at a point of the gas, of one particle, of the whole bed (probes/NAME.csv), and distributions of a
+// Time series: at a point of the gas, of one particle, of a wall, of the whole bed (probes/NAME.csv), and distributions of a
 // particle quantity (histograms/NAME.csv).
 #pragma once
 
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/checkpoint.hpp"
 #include "core/csv.hpp"
 #include "core/time_control.hpp"
 #include "tools/pellicle/bed.hpp"
@@ -13,6 +14,7 @@
 #include "tools/pellicle/find_particle.hpp"
 #include "tools/pellicle/gas_fields.hpp"
 #include "tools/pellicle/results_folder.hpp"
+#include "tools/pellicle/wall_figures.hpp"
 
 namespace pellicle::tools {
 
@@ -24,6 +26,7 @@ struct OutputState {
   const dem::Particles* particles = nullptr;  ///< null without particles
   const GasFields* gas = nullptr;             ///< null without gas
   ContactFigures contacts{};
+  const std::vector<WallFigures>* walls = nullptr;  ///< null without particles
 
   /// Empty without particles.
   const HostParticles& host_particles() const;
@@ -41,6 +44,10 @@ class Probes {
   void sample(const OutputState& state);
   void flush();
 
+  /// What walls had received when their last rows were written.
+  void save(core::CheckpointWriter& checkpoint) const;
+  void load(const core::CheckpointReader& checkpoint);
+
  private:
   struct Probe {
     ProbeSpec spec;
@@ -48,6 +55,8 @@ class Probes {
     std::vector<int> quantities;  ///< positions in the list of the probe's kind
     Index cell = 0;               ///< of a point
     core::CsvSeries file;
+    WallFigures before{};  ///< at the last row, of a wall
+    Real time_before = 0;  ///< [s]
   };
   void append(Probe& probe, const OutputState& state);
 

@@ -44,6 +44,10 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
         make_coupling_options(spec_), make_grid(spec_.coupling.transfer_grid, spec_.domain), gas_->grid(),
         coupling::GasProperties{spec_.gas->options.density, spec_.gas->options.viscosity, spec_.gravity});
   }
+  if (particles_) {
+    for (const WallSpec& wall : spec_.walls) walls_.push_back({wall.name, {}, {}, 0});
+    particles_->hold_walls();  // until t = 0
+  }
   if (options_.until) time_.end_at(*options_.until);
   checkpoints_ = time_.schedule(spec_.output.checkpoint_every, "output.checkpoint.every");
   // Everything that can be wrong with the input has shown by the end of start(); the folder is touched only then.
@@ -78,6 +82,12 @@ void Simulation::resume() {
   outputs_->load(file);
   wall_impulse_ = file.read_vec3("run/wall_impulse");
   support_impulse_ = file.read_vec3("run/support_impulse");
+  for (WallFigures& wall : walls_) {
+    const std::string path = "run/walls/" + wall.name;
+    wall.impulse = file.read_vec3(path + "/impulse");
+    wall.angular_impulse = file.read_vec3(path + "/angular_impulse");
+    wall.contacts = file.read_int64(path + "/contacts");
+  }
   settled_gravity_ = file.read_vec3("run/settled_gravity");
   settled_wall_ = file.read_vec3("run/settled_wall");
   settled_volume_time_ = file.read_double("run/settled_volume_time");
@@ -129,6 +139,11 @@ void Simulation::report_numerics() const {
   if (crowded_steps_ > 0) {
     core::log().warn("in {} gas steps a transfer cell stayed below coupling.minimum_void_fraction",
                      crowded_steps_);
+  }
+  if (crowded_walls_ > 0) {
+    core::log().warn(
+        "{} times a particle overlapped more triangles of walls than are compared; a coarser mesh may help",
+        crowded_walls_);
   }
 }
 
@@ -196,6 +211,8 @@ void Simulation::release_gas() {
     settled_gravity_ = particles_->gravity_impulse();
     settled_volume_time_ = particles_->volume_time();
     settled_wall_ = impulse_through_walls();
+    particles_->start_walls();
+    for (WallFigures& wall : walls_) wall.impulse = wall.angular_impulse = Vec3{};
   }
   if (gas_) ledger_.open(Conserved::gas_mass, gas_->balance().mass_initial);
   Vec3 momentum{};
@@ -216,6 +233,12 @@ void Simulation::watch_contacts() {
   contacts_ = particles_->collect_report();
   wall_impulse_ += contacts_.wall_impulse;
   support_impulse_ += contacts_.support_impulse;
+  for (std::size_t w = 0; w < contacts_.walls.size(); ++w) {
+    walls_[w].impulse += contacts_.walls[w].impulse;
+    walls_[w].angular_impulse += contacts_.walls[w].angular_impulse;
+    walls_[w].contacts = contacts_.walls[w].touching;
+  }
+  crowded_walls_ += contacts_.crowded_walls;
   summary_.largest_overlap = std::max(summary_.largest_overlap, contacts_.largest_depth);
   summary_.largest_overlap_ratio = std::max(summary_.largest_overlap_ratio, contacts_.largest_overlap);
   summary_.largest_impact_speed = std::max(summary_.largest_impact_speed, contacts_.largest_approach_speed);
@@ -283,6 +306,7 @@ void Simulation::write_outputs(bool last) {
   state.contacts = {contacts_per_particle(), summary_.largest_overlap_ratio};
   GasFields fields;
   if (particles_) state.particles = &particles_->particles();
+  if (particles_) state.walls = &walls_;
   if (gas_) {
     const cfd::GasState& gas = gas_->state();
     fields = {&gas_->grid(),     gas.velocity,          gas.pressure,
@@ -309,6 +333,12 @@ void Simulation::write_checkpoint() {
   outputs_->save(file);
   file.write("run/wall_impulse", wall_impulse_);
   file.write("run/support_impulse", support_impulse_);
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const std::string path = "run/walls/" + walls_[w].name;
+    file.write(path + "/impulse", walls_[w].impulse);
+    file.write(path + "/angular_impulse", walls_[w].angular_impulse);
+    file.write(path + "/contacts", walls_[w].contacts);
+  }
   file.write("run/settled_gravity", settled_gravity_);
   file.write("run/settled_wall", settled_wall_);
   file.write("run/settled_volume_time", settled_volume_time_);
@@ -336,6 +366,7 @@ void Simulation::write_summary(const std::string& status, const std::string& mes
     summary_.particles = particles_->particles().count;
     summary_.contacts_per_particle = contacts_per_particle();
     summary_.particles_left_through_open_sides = particles_->left_through_open_sides();
+    summary_.walls = walls_;
   }
   summary_.peak_memory_bytes = peak_memory_bytes();
   tools::write_summary(folder_->summary(), summary_);

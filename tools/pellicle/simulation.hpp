@@ -84,10 +84,12 @@ class Simulation {
   core::Schedule checkpoints_;
   Real largest_courant_ = 0;
   std::int64_t crowded_steps_ = 0;  // in which the bound of the void fraction could not be kept
+  std::int64_t crowded_walls_ = 0;  // times that a particle met more triangles than are compared
   Summary summary_;
   cfd::ParticleExchange no_particles_;       // what a gas without particles feels
   dem::ContactReport contacts_;              // of the last outer step
   Vec3 wall_impulse_{}, support_impulse_{};  // since the start [N s]
+  std::vector<WallFigures> walls_;           // of each wall
   Vec3 settled_gravity_{}, settled_wall_{};  // gravity and impulse_through_walls before t = 0 [N s]
   Real settled_volume_time_ = 0;             // [m3 s]
   double wall_begin_ = 0, wall_before_ = 0;  // of this process, and of those before it [s]

@@ -75,6 +75,16 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["instantaneous_momentum_defect"] = summary.instantaneous_momentum_defect;
   json["lost_particles"] = summary.lost_particles;
   json["particles_left_through_open_sides"] = summary.particles_left_through_open_sides;
+  for (const WallFigures& wall : summary.walls) {
+    const auto list = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
+    const double time = summary.simulated_seconds;
+    const auto mean = [&](const Vec3& v) { return list(time > 0 ? (1 / time) * v : Vec3{}); };
+    json["walls"][wall.name] = {{"mean_force", mean(wall.impulse)},
+                                {"mean_torque", mean(wall.angular_impulse)},
+                                {"impulse", list(wall.impulse)},
+                                {"angular_impulse", list(wall.angular_impulse)},
+                                {"contacts", wall.contacts}};
+  }
   core::write_file_atomically(path, json.dump(2) + "\n");
 }
 
@@ -109,6 +119,15 @@ Summary read_summary(const std::filesystem::path& path) {
     summary.instantaneous_momentum_defect = json.value("instantaneous_momentum_defect", 0.0);
     summary.lost_particles = json.at("lost_particles");
     summary.particles_left_through_open_sides = json.at("particles_left_through_open_sides");
+    if (json.contains("walls")) {
+      for (const auto& [name, wall] : json.at("walls").items()) {
+        const auto vector = [&](const char* key) {
+          const auto& list = wall.at(key);
+          return Vec3{list.at(0), list.at(1), list.at(2)};
+        };
+        summary.walls.push_back({name, vector("impulse"), vector("angular_impulse"), wall.at("contacts")});
+      }
+    }
     return summary;
   } catch (const Json::exception& error) {
     throw RunError(fmt::format("{}: not a summary of a run: {}", path.string(), error.what()));

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/ledger.hpp"
 #include "core/timers.hpp"
 #include "core/types.hpp"
+#include "tools/pellicle/wall_figures.hpp"
 
 namespace pellicle::tools {
 
@@ -35,6 +37,7 @@ struct Summary {
   std::int64_t lost_particles = 0;
   std::int64_t particles_left_through_open_sides = 0;
   std::int64_t gas_steps = 0;
+  std::vector<WallFigures> walls;  ///< what each wall received
 
   /// Particles x substeps / (contacts + neighbours + motion), all threads; 0 without particles.
   double particle_steps_per_second() const;
