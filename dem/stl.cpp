@@ -84,6 +84,7 @@ class Words {
     const std::size_t end = rest_.find('\n');
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end);
   }
+  bool at_end() const { return rest_.empty(); }
   std::string place() const { return fmt::format("line {}", line_); }
 
  private:
@@ -98,7 +99,10 @@ bool is_word(std::string_view word, std::string_view expected) {
 
 void expect(Words& words, std::string_view expected) {
   const std::string_view word = words.next();
-  if (word.empty()) refuse(fmt::format("{}: the file ends within a facet, it is truncated", words.place()));
+  // The end may come within a word.
+  const bool cut =
+      words.at_end() && word.size() < expected.size() && is_word(word, expected.substr(0, word.size()));
+  if (cut) refuse(fmt::format("{}: the file ends within a facet, it is truncated", words.place()));
   if (!is_word(word, expected)) {
     refuse(fmt::format("{}: \"{}\" where \"{}\" is expected", words.place(), word.substr(0, 40), expected));
   }
@@ -137,6 +141,9 @@ std::vector<Facet> read_ascii(std::string_view content) {
       }
       words.skip_line();
       continue;
+    }
+    if (words.at_end() && !is_word(word, "facet")) {
+      refuse(fmt::format("{}: the file ends before endsolid, it is truncated", words.place()));
     }
     if (!is_word(word, "facet")) {
       refuse(fmt::format("{}: \"{}\" where \"facet\" or \"endsolid\" is expected", words.place(),
@@ -209,7 +216,7 @@ TriangleMesh read_stl(const std::filesystem::path& path, Real scale, MeshReport&
   try {
     content = core::read_file(path);
   } catch (const RunError&) {
-    refuse(fmt::format("{} cannot be read", path.string()), "a file that is there");
+    refuse("it cannot be read", "a file that is there");
   }
   return parse_stl(content, scale, report);
 }

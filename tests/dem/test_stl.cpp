@@ -114,7 +114,9 @@ TEST(Stl, RefusesWhatIsNoMesh) {
   expect_error(binary.substr(0, binary.size() - 30),
                "its header announces 12 triangles, which take 684 bytes, but it has 654");
   expect_error(binary + "!", "announces 12 triangles, which take 684 bytes, but it has 685");
-  expect_error(ascii.substr(0, ascii.size() / 2), "truncated");
+  for (const std::size_t size :
+       {ascii.size() / 2, ascii.size() / 2 + 5, ascii.size() / 2 + 10, ascii.size() / 3})
+    expect_error(ascii.substr(0, size), "truncated");
   expect_error(ascii.substr(0, ascii.rfind("endsolid")),
                "line 86: there is no endsolid, the file is truncated");
   expect_error("solid empty\nendsolid empty\n", "it has no triangles; at least one triangle");
@@ -133,7 +135,8 @@ TEST(Stl, RefusesCoordinatesThatAreNoNumbers) {
     auto broken = box;
     broken[4].b.y = bad;
     expect_error(binary_stl(broken), "triangle 5 has a corner at (");
-    expect_error(ascii_stl(broken), "line 34 has a corner at (");
+    // The fifth facet of seven lines begins at line 30, its second corner is in line 33.
+    expect_error(ascii_stl(broken), "line 33 has a corner at (");
     expect_error(ascii_stl(broken), "; finite coordinates");
   }
 }

@@ -100,6 +100,27 @@ particles:
      fill: {box: {min: [0, 0, "90 mm"], max: ["40 mm", "40 mm", "100 mm"]}}}
 )";
 
+/// Walls of every shape and motion.
+inline constexpr const char* vessel_case = R"(domain: {min: [0, 0, 0], max: ["40 mm", "40 mm", "100 mm"]}
+time: {end: 0.1, particle_step: 1e-6}
+materials: {glass: {density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.22}}
+contacts: {pairs: [{between: [glass, glass], restitution: 0.9, sliding_friction: 0.3},
+                   {between: [glass, steel], restitution: 0.9, sliding_friction: 0.3}]}
+particles:
+  - {material: glass, count: 50, diameter: "2 mm", fill: {box: {min: ["10 mm", "10 mm", "40 mm"], max: ["30 mm", "30 mm", "60 mm"]}}}
+walls:
+  - {name: plate, material: steel, disc: {centre: ["20 mm", "20 mm", "2 mm"], normal: [0, 0, 2], radius: "18 mm", inner_radius: "1 mm"},
+     spin: {rate: "60 rpm", axis: [0, 0, -3], through: ["20 mm", "20 mm", 0]}}
+  - {name: tube, material: steel, cylinder: {from: ["20 mm", "20 mm", "20 mm"], to: ["20 mm", "20 mm", "80 mm"], radius: "18 mm"},
+     torque_about: [0, 0, 1]}
+  - {name: funnel, material: steel, cone: {from: ["20 mm", "20 mm", "10 mm"], to: ["20 mm", "20 mm", "20 mm"], from_radius: "5 mm",
+                                           to_radius: "18 mm"}}
+  - {name: step, material: steel, block: {min: ["25 mm", "10 mm", 0], max: ["30 mm", "15 mm", "5 mm"]},
+     vibration: {amplitude: [0, 0, "1 mm"], frequency: "50 Hz", phase: "90 deg"}}
+  - {name: insert, material: steel, stl: insert.stl, unit: mm}
+output: {probes: [{name: load, wall: tube, quantities: [wall_force_z, wall_torque_y], every: "1 ms"}]}
+)";
+
 /// Two particles and nothing else.
 inline constexpr const char* two_particles_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
 time: {end: 0.1, particle_step: 1e-5}

@@ -127,7 +127,7 @@ TEST(CaseFile, DefaultsFollowFromOtherKeys) {
 }
 
 TEST(CaseFile, ResolvedFileGivesTheSameCase) {
-  for (const char* text : {spouted_bed_case, channel_case, powders_case, two_particles_case}) {
+  for (const char* text : {spouted_bed_case, channel_case, powders_case, vessel_case, two_particles_case}) {
     const CaseSpec spec = parse_case(text, "some_case.yaml");
     const std::string resolved = resolved_yaml(spec);
     const CaseSpec again = parse_case(resolved, "another_name.yaml");
@@ -174,6 +174,7 @@ TEST(CaseFile, TheTestsCoverEveryKey) {
   std::map<std::string, std::string> given = parse_case(spouted_bed_case, "c.yaml").lines;
   given.merge(std::map(parse_case(channel_case, "c.yaml").lines));
   given.merge(std::map(parse_case(powders_case, "c.yaml").lines));
+  given.merge(std::map(parse_case(vessel_case, "c.yaml").lines));
   const std::set<std::string> elsewhere{"coupling.transfer_grid.cells", "coupling.transfer_grid.growth",
                                         "coupling.transfer_grid.faces.x", "coupling.transfer_grid.faces.y",
                                         "coupling.transfer_grid.faces.z"};
@@ -333,9 +334,9 @@ TEST(CaseErrors, WallsAndSides) {
             "--set: walls.floor.plane.normal: it has no length; a direction such as [0, 0, 1]");
   EXPECT_EQ(
       bed_errors("walls.floor.velocity=[0, 0, 1]"),
-      "--set: walls.floor.velocity: it leads through the plane; a velocity at right angles to the normal");
+      "--set: walls.floor.velocity: it leads through the wall; a velocity at right angles to the normal");
   EXPECT_EQ(bed_errors("walls.floor.open=[top]"),
-            "--set: walls.floor.open: a plane has no sides; only with box");
+            "--set: walls.floor.open: only the sides of a box can be open; no open, or box: domain");
   EXPECT_EQ(
       bed_errors("walls.sides.open=[top, front]"),
       "--set: walls.sides.open: front is a periodic side, which has no wall; sides that are not periodic");

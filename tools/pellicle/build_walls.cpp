@@ -11,7 +11,7 @@
 namespace pellicle::tools {
 namespace {
 
-constexpr std::array<Real, 3> metres{1, 1e-2, 1e-3};  // in the order of LengthUnit
+constexpr std::array<Real, 3> metres{1, 1e-2, 1e-3};  // in the order of length_units
 
 dem::PlaneShape make_side(const Box& box, cfd::Side side) {
   const int axis = cfd::axis_of(side);
@@ -39,7 +39,7 @@ dem::RevolvedShape revolve(const Vec3& from, const Vec3& to, Real radius_from, R
 void add_mesh(const CaseSpec& spec, const WallSpec& wall, dem::Wall& made) {
   try {
     dem::MeshReport report;
-    const Real scale = metres.at(static_cast<std::size_t>(wall.unit));
+    const Real scale = metres.at(static_cast<std::size_t>(wall.unit.value_or(0)));
     made.mesh = std::make_shared<dem::TriangleMesh>(dem::read_stl(*wall.stl, scale, report));
     core::log().info("wall {}: {}", wall.name, dem::describe_mesh(report));
     const std::string doubts = dem::doubts_about_mesh(report);

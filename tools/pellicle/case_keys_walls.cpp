@@ -84,13 +84,15 @@ void describe_shape(Keys& keys, WallSpec& wall, const std::string& case_file) {
   keys.section<Box>({"block", "a solid box"}, wall.block, describe_box);
   keys.text({"stl", "a file of triangles, thin; its path is relative to the case file"}, TextRule::any,
             wall.stl);
-  keys.choice({"unit", "that the coordinates of the STL file are in"}, length_units, wall.unit);
+  keys.choice({"unit", "that the coordinates of the STL file are in", Need::has_default, "`m`"}, length_units,
+              wall.unit);
   keys.exactly_one({"box", "plane", "disc", "cylinder", "cone", "block", "stl"});
   if (!keys.reading()) return;
   if (!wall.box && !wall.open.empty()) {
-    keys.problem("open", "this shape has no sides that could be open; only with box");
+    keys.problem("open", "only the sides of a box can be open; no open, or box: domain");
   }
-  if (!wall.stl && keys.given("unit"))
+  if (wall.stl && !wall.unit) wall.unit = 0;
+  if (!wall.stl && wall.unit)
     keys.problem("unit", "there is no file that it says something of; only with stl");
   // The resolved file, which is written elsewhere, must find the mesh too.
   if (wall.stl && std::filesystem::path(*wall.stl).is_relative()) {

@@ -131,9 +131,6 @@ struct DiscSpec {
   Real inner_radius = 0;  ///< of the hole [m]
 };
 
-/// A unit that an STL file may be in, in the order of `length_units`.
-enum class LengthUnit { m, cm, mm };
-
 struct SpinSpec {
   Real rate = 0;  ///< [rad/s]
   Vec3 axis;      ///< of length 1
@@ -157,9 +154,9 @@ struct WallSpec {
   std::optional<dem::ConeRegion> cone;
   std::optional<Box> block;        ///< a solid box
   std::optional<std::string> stl;  ///< path of a file, absolute
-  LengthUnit unit = LengthUnit::m;
-  int material = 0;  ///< index into CaseSpec::materials
-  Vec3 velocity;     ///< of the surface; the wall stays in place, like a belt [m/s]
+  std::optional<int> unit;         ///< of the file, in the order of `length_units`
+  int material = 0;                ///< index into CaseSpec::materials
+  Vec3 velocity;                   ///< of the surface; the wall stays in place, like a belt [m/s]
   std::optional<SpinSpec> spin;
   std::optional<VibrationSpec> vibration;
   std::optional<Vec3> torque_about;  ///< [m]

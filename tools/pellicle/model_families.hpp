@@ -11,7 +11,7 @@ namespace pellicle::tools {
 // In the order of their enumerations.
 extern const core::ModelList axes;           ///< 0, 1, 2
 extern const core::ModelList domain_sides;   ///< cfd::Side
-extern const core::ModelList length_units;   ///< LengthUnit
+extern const core::ModelList length_units;   ///< of meshes
 extern const core::ModelList fill_patterns;  ///< dem::FillPattern
 
 extern const core::ModelList normal_contact_models;
