@@ -39,14 +39,13 @@ struct Options {
   std::vector<Real> size{0.145, 0.06, 0.3};  // [m]
   int steps = 280;
   int warm_up = 20;
-  int outer = 10;                // substeps an outer step
-  Real time_step = 1e-5;         // [s]
-  Real restitution = 0.97;       // [-]
-  Real friction = 0.3;           // sliding, [-]
-  Real gravity = 9.81;           // [m/s²]
-  Real relaxation_time = 0;      // of a drag on every bead [s]; 0: none
-  bool attraction = false;       // where a contact ends; allowed in the codes this is compared with
-  std::vector<int> tiles{1, 1};  // copies of the bed side by side along x and y
+  int outer = 10;            // substeps an outer step
+  Real time_step = 1e-5;     // [s]
+  Real restitution = 0.97;   // [-]
+  Real friction = 0.3;       // sliding, [-]
+  Real gravity = 9.81;       // [m/s²]
+  Real relaxation_time = 0;  // of a drag on every bead [s]; 0: none
+  bool attraction = false;   // where a contact ends; allowed in the codes this is compared with
 };
 
 /// A drag −m v/τ on every bead, with which a bed comes to rest sooner.
@@ -59,8 +58,7 @@ struct RestingDrag {
   }
 };
 
-std::vector<dem::ParticleSeed> read_bed(const Options& options) {
-  const std::string& file = options.bed_file;
+std::vector<dem::ParticleSeed> read_bed(const std::string& file) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error("cannot read " + file);
   std::vector<dem::ParticleSeed> seeds;
@@ -78,17 +76,6 @@ std::vector<dem::ParticleSeed> read_bed(const Options& options) {
     seeds.push_back(seed);
   }
   if (seeds.empty()) throw std::runtime_error(file + " has no line with a position");
-  const std::size_t count = seeds.size();
-  for (int i = 0; i < options.tiles[0]; ++i) {
-    for (int j = 0; j < options.tiles[1]; ++j) {
-      if (i == 0 && j == 0) continue;
-      for (std::size_t k = 0; k < count; ++k) {
-        dem::ParticleSeed copy = seeds[k];
-        copy.position += {i * options.size[0], j * options.size[1], 0};
-        seeds.push_back(copy);
-      }
-    }
-  }
   return seeds;
 }
 
@@ -117,8 +104,7 @@ void write_bed(const std::string& file, const dem::Particles& particles) {
 
 dem::EngineSetup make_setup(const Options& options) {
   dem::EngineSetup setup;
-  setup.domain.box = {
-      {0, 0, 0}, {options.tiles[0] * options.size[0], options.tiles[1] * options.size[1], options.size[2]}};
+  setup.domain.box = {{0, 0, 0}, {options.size[0], options.size[1], options.size[2]}};
   // The wall is as soft as the beads: so are the walls of the codes this is compared with.
   setup.materials = {{"glass", bead_density, youngs_modulus, poisson_ratio, false}};
   setup.pairs = {{0, 0, options.restitution, options.friction, 0}};
@@ -153,7 +139,6 @@ void add_options(CLI::App& app, Options& options) {
   app.add_flag("--attraction", options.attraction, "let damping pull two beads together as they part");
   app.add_option("--gravity", options.gravity, "downwards [m/s²]");
   app.add_option("--relaxation-time", options.relaxation_time, "of a drag on every bead [s]; 0: no drag");
-  app.add_option("--tiles", options.tiles, "copies of the bed side by side along x and y")->expected(2);
   app.add_option("--output", options.output_file, "where the bed is written after the timed steps");
 }
 
@@ -166,7 +151,7 @@ double cpu_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; } 
 class Bed {
  public:
   explicit Bed(const Options& options) : options_(options), engine_(make_setup(options)) {
-    engine_.set_particles(read_bed(options));
+    engine_.set_particles(read_bed(options.bed_file));
   }
 
   void run(int steps) {
@@ -221,10 +206,11 @@ void run_benchmark(const Options& options) {
       "{\"particles\": %d, \"threads\": %d, \"steps\": %d, \"wall_seconds\": %.6f, \"cpu_seconds\": %.6f, "
       "\"contacts_per_particle_start\": %.5f, \"contacts_per_particle_end\": %.5f, \"list_builds\": %lld, "
       "\"neighbours_per_particle\": %.3f, \"kinetic_energy\": %.9g, \"contact_seconds\": %.6f, "
-      "\"neighbour_seconds\": %.6f, \"motion_seconds\": %.6f}\n",
+      "\"neighbour_seconds\": %.6f, \"motion_seconds\": %.6f, \"bytes_per_particle\": %.1f}\n",
       bed.engine().particles().count, Kokkos::DefaultHostExecutionSpace().concurrency(), options.steps,
       wall_seconds, cpu_seconds, contacts_start, bed.contacts_per_particle(), static_cast<long long>(built),
-      neighbours_per_particle, totals.kinetic_energy, contacts, neighbours, motion);
+      neighbours_per_particle, totals.kinetic_energy, contacts, neighbours, motion,
+      static_cast<double>(bed.engine().bytes()) / bed.engine().particles().count);
 }
 
 int run(int argc, char** argv) {

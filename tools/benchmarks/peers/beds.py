@@ -92,14 +92,6 @@ def settle(path, law, program, say):
     work.unlink()
 
 
-def cut(bed, count, path):
-    """The `count` beads of a bed with the least x, and the length of the box that holds them [m]."""
-    rows = read(bed)
-    rows = rows[np.argsort(rows[:, 0], kind="stable")][:count]
-    write(path, rows)
-    return float(rows[:, 0].max() + DIAMETER / 2)
-
-
 def make(kind, given, cache, program, say):
     """The file of a bed: the one given, or one made here before, or a new one."""
     cache.mkdir(parents=True, exist_ok=True)

@@ -78,8 +78,8 @@ def compare_codes(cases, steps, make_job, codes_of, run, say):
     records = []
     for case in cases:
         say(f"\nSame physics? {case}, {steps} steps from the given state. Differences are rms over the beads, relative "
-            f"to LIGGGHTS's rms; far from walls: by {FAR / beds.DIAMETER:.0f} diameters at least. Overlaps and contacts "
-            "are counted here.")
+            f"to LIGGGHTS's rms; far from walls: by {FAR / beds.DIAMETER:.0f} diameters at least. Overlaps and "
+            "contacts are counted here.")
         say("| " + " | ".join(heading for _, heading, _ in COLUMNS) + " |")
         say("|" + "---|" * len(COLUMNS))
         reference = None
