@@ -93,8 +93,8 @@ void write_bed(const std::string& file, const dem::Particles& particles) {
   out << "# x y z [m] vx vy vz [m/s] wx wy wz [rad/s] ax ay az [m/s2] alphax alphay alphaz [rad/s2]\n";
   for (const Index p : at) {
     const auto& m = motion(p);
-    const Vec3 a = kick(p);
-    const Vec3 b = turn(p);
+    const auto a = kick(p);
+    const auto b = turn(p);
     out << place(p).x << ' ' << place(p).y << ' ' << place(p).z << ' ' << m.vx << ' ' << m.vy << ' ' << m.vz
         << ' ' << m.wx << ' ' << m.wy << ' ' << m.wz << ' ' << a.x << ' ' << a.y << ' ' << a.z << ' ' << b.x
         << ' ' << b.y << ' ' << b.z << '\n';
