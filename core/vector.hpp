@@ -77,6 +77,12 @@ KOKKOS_INLINE_FUNCTION T norm(const Vector3<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
+/// The same vector in another type.
+template <class To, class From>
+KOKKOS_INLINE_FUNCTION constexpr Vector3<To> convert(const Vector3<From>& a) {
+  return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};
+}
+
 using Vec3 = Vector3<Real>;
 using Index3 = Vector3<Index>;
 

@@ -45,13 +45,13 @@ struct PackRows {
     for (std::int32_t slot = list.offset(p); slot < list.offset(p + 1); ++slot) {
       if (!slots.held(slot)) continue;
       partner(entry) = list.partner(slot);
-      for (int s = 0; s < springs; ++s) spring(entry * springs + s) = slots.at(springs, slot)[s];
+      for (int s = 0; s < springs; ++s) spring(entry * springs + s) = slots.get(s, slot);
       ++entry;
     }
   }
 };
 
-/// Finds each slot's springs in the packed row of its particle.
+/// Finds each slot's springs in the packed row of its particle or, of half lists, in that of its partner.
 struct UnpackRows {
   int springs;
   Index particles;  ///< that have a row or none; later ones have none
@@ -60,17 +60,28 @@ struct UnpackRows {
   DeviceArray<std::int32_t> offset, partner, row;
   DeviceArray<Vec3> spring;
 
-  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
+  /// The packed entry of a particle's row with this partner, -1 if there is none.
+  KOKKOS_INLINE_FUNCTION std::int32_t find(Index p, Index q) const {
     const std::int32_t from = p < particles ? row(p) : -1;
-    const std::int32_t begin = from < 0 ? 0 : offset(from);
-    const std::int32_t end = from < 0 ? 0 : offset(from + 1);
+    if (from < 0) return -1;
+    for (std::int32_t entry = offset(from); entry < offset(from + 1); ++entry) {
+      if (partner(entry) == q) return entry;
+    }
+    return -1;
+  }
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
     for (std::int32_t slot = list.offset(p); slot < list.offset(p + 1); ++slot) {
       const std::int32_t q = list.partner(slot);
-      std::int32_t entry = begin;
-      while (entry < end && partner(entry) != q) ++entry;
-      slots.held(slot) = entry < end;
-      if (entry == end) continue;
-      for (int s = 0; s < springs; ++s) slots.at(springs, slot)[s] = spring(entry * springs + s);
+      std::int32_t entry = find(p, q);
+      Real sign = 1;
+      if (entry < 0) {
+        entry = find(q, p);
+        sign = -1;
+      }
+      slots.held(slot) = entry >= 0;
+      if (entry < 0) continue;
+      for (int s = 0; s < springs; ++s) slots.set(s, slot, sign * spring(entry * springs + s));
     }
   }
 };
@@ -127,8 +138,10 @@ void ContactHistory::reorder(const DeviceArray<std::int32_t>& order, Index befor
 void ContactHistory::unpack(const NeighbourList& list) {
   if (springs_ == 0) return;
   const std::size_t entries = list.partner.extent(0);
+  slots_.stride = entries + 8;
   ensure_size(slots_.held, entries, "dem::contact_history::held");
-  ensure_size(slots_.spring, entries * static_cast<std::size_t>(springs_), "dem::contact_history::spring");
+  ensure_size(slots_.spring, 3 * slots_.stride * static_cast<std::size_t>(springs_),
+              "dem::contact_history::spring");
   const Index known = place_ == Place::packed ? particles_ : 0;
   Kokkos::parallel_for("dem::contact_history::unpack", DeviceRange(0, list.count),
                        UnpackRows{springs_, known, list, slots_, offset_, partner_, row_, spring_});

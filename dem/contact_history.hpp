@@ -7,14 +7,24 @@
 
 namespace pellicle::dem {
 
-/// Springs of all contacts as the contact loop sees them: those of a list entry side by side. Both particles of a pair
-/// keep a copy, of opposite signs. Empty for laws without springs.
+/// Springs of all contacts as the contact loop sees them, one array a component. Where both particles of a pair have it in
+/// their rows, both keep a copy, of opposite signs. Empty for laws without springs.
 struct SpringSlots {
-  DeviceArray<Vec3> spring;  ///< entry slot × springs + s of a neighbour list's slot
-  DeviceArray<bool> held;    ///< per slot: it touched in the last substep, so its springs mean something
+  DeviceArray<Real>
+      spring;  ///< component e of spring s of a neighbour list's slot: entry (3 s + e) stride + slot
+  DeviceArray<bool> held;  ///< per slot: it touched in the last substep, so its springs mean something
+  std::size_t stride = 0;  ///< whole vectors of eight beyond the last slot can be read
 
-  KOKKOS_INLINE_FUNCTION Vec3* at(int springs, std::int32_t slot) const {
-    return spring.data() + static_cast<std::size_t>(springs) * static_cast<std::size_t>(slot);
+  KOKKOS_INLINE_FUNCTION Real* component(int component) const {
+    return spring.data() + static_cast<std::size_t>(component) * stride;
+  }
+  KOKKOS_INLINE_FUNCTION Vec3 get(int s, std::int32_t slot) const {
+    return {component(3 * s)[slot], component(3 * s + 1)[slot], component(3 * s + 2)[slot]};
+  }
+  KOKKOS_INLINE_FUNCTION void set(int s, std::int32_t slot, const Vec3& value) const {
+    component(3 * s)[slot] = value.x;
+    component(3 * s + 1)[slot] = value.y;
+    component(3 * s + 2)[slot] = value.z;
   }
 };
 

@@ -20,6 +20,12 @@ struct BlockReport {
   std::int64_t touching = 0;        ///< touching partners, each pair counted at both particles
 };
 
+/// Extremes and impulses go on, counts start anew.
+KOKKOS_INLINE_FUNCTION BlockReport start_report(BlockReport report) {
+  report.touching = 0;
+  return report;
+}
+
 /// Forces and torques by contact, and the reports of the blocks. All arrays are particle- or block-sized.
 struct ContactResult {
   DeviceArray<Vec3> force;             ///< [N]
@@ -41,9 +47,8 @@ struct ContactInput {
   bool one_particle_material = true;  ///< all particles are of material 0: the pair table is one entry
 };
 
-/// Particles a block. On a CPU enough to fill vectors with touching pairs, few enough to stay in the first-level cache;
-/// on a GPU every particle is a work item of its own.
-inline constexpr Index contact_block = std::is_same_v<Device, Host> ? 64 : 1;
+/// Particles a block, a work item of the loop. On a GPU every particle is one of its own.
+inline constexpr Index contact_block = half_lists ? list_block : 1;
 
 inline Index contact_block_count(Index particles) { return (particles + contact_block - 1) / contact_block; }
 

@@ -143,7 +143,9 @@ void Engine::reorder(const DeviceArray<std::int32_t>& order, Index count) {
 void Engine::sort_memory() {
   if (search_.empty()) return;
   search_.front().find_order(particles_, setup_.time_step, list_);
-  reorder(search_.front().order(), particles_.count);
+  const DeviceArray<std::int32_t>& order = result_.touching_new;  // free between substeps
+  search_.front().find_memory_order(order);
+  reorder(order, particles_.count);
   outer_steps_since_sort_ = 0;
 }
 

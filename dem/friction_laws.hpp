@@ -7,27 +7,42 @@
 namespace pellicle::dem {
 
 /// The tangential force on a body, and its spring as the next step finds it.
-struct SpringForce {
-  Vec3 force;   ///< [N]
-  Vec3 spring;  ///< [m]
+template <class Number>
+struct SpringForceOf {
+  Vector3<Number> force;  ///< [N]
+  Vec3 spring;            ///< [m]
 };
 
+using SpringForce = SpringForceOf<Real>;
+
 /// Turns a spring with its contact: by `twist` [rad] about the normal, as the two bodies do on average, then into the
-/// plane across n, its length kept (Luding, Granul. Matter 10 (2008) 235, eq. 18).
-KOKKOS_FORCEINLINE_FUNCTION Vec3 turn_spring(const Vec3& spring, const Vec3& n, Real twist) {
-  const Vec3 twisted = spring + twist * cross(n, spring);
-  const Vec3 tangential = twisted - dot(twisted, n) * n;
-  return Kokkos::sqrt(norm_squared(spring) / (norm_squared(tangential) + 1e-300)) * tangential;
+/// plane across n, its length kept (Luding, Granul. Matter 10 (2008) 235, eq. 18). What changes is small beside the spring
+/// and added to it, so that rounding it to Number does no harm.
+template <class Number = Real>
+KOKKOS_FORCEINLINE_FUNCTION Vec3 turn_spring(const Vec3& spring, const Vector3<Number>& n,
+                                             Same<Number> twist) {
+  const Vector3<Number> rounded = convert<Number>(spring);
+  const Vector3<Number> turn = twist * cross(n, rounded);
+  const Vector3<Number> change = turn - dot(rounded + turn, n) * n;
+  const Vec3 tangential = spring + convert<Real>(change);
+  // |spring|²/|tangential|² = 1 − growth; √(1 − growth) − 1 without cancellation.
+  const Number growth = (2 * dot(rounded, change) + norm_squared(change)) /
+                        (norm_squared(convert<Number>(tangential)) + tiny<Number>);
+  const Number stretch = -growth / (1 + Kokkos::sqrt(1 - growth));
+  return tangential + static_cast<Real>(stretch) * tangential;
 }
 
 /// Factor <= 1 that brings a vector of a given length down to `limit`.
-KOKKOS_FORCEINLINE_FUNCTION Real shorten(Real length, Real limit) {
-  return limit < length ? limit / (length + 1e-300) : Real(1);
+template <class Number>
+KOKKOS_FORCEINLINE_FUNCTION Number shorten(Number length, Same<Number> limit) {
+  return limit < length ? limit / (length + tiny<Number>) : Number(1);
 }
 
 /// Coulomb's limit µ_s F_n [N]; none where the normal force pulls.
-KOKKOS_FORCEINLINE_FUNCTION Real sliding_limit(const NormalForce& normal, const PairParameters& p) {
-  return normal.force > 0 ? p.sliding_friction * normal.force : Real(0);
+template <class Number>
+KOKKOS_FORCEINLINE_FUNCTION Number sliding_limit(const NormalForceOf<Number>& normal,
+                                                 const Same<PairParametersOf<Number>>& p) {
+  return normal.force > 0 ? p.sliding_friction * normal.force : Number(0);
 }
 
 /// F_t = −min(µ_s F_n, η_t |v_t|) v_t/|v_t|, without history (PHYSICS.md 3; T 2.2.1). η_t is the smaller of the
@@ -42,12 +57,15 @@ struct ViscousCoulomb {
   Real time_step = 0;  ///< particle step [s]
 
   /// Returns the factor k of F_t = −k v_t [kg/s].
-  KOKKOS_FORCEINLINE_FUNCTION Real operator()(const ContactState& c, const NormalForce& normal,
-                                              Real tangential_speed, const PairParameters& p) const {
-    const Real critical = p.tangential_damping_ratio * normal.stiffness_mass_root;
-    const Real stable = c.reduced_mass / (21 * time_step);  // (2/7)/6 = 1/21
-    const Real viscous = critical < stable ? critical : stable;
-    const Real sliding = sliding_limit(normal, p) / (tangential_speed + 1e-300);
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION Number operator()(const ContactStateOf<Number>& c,
+                                                const Same<NormalForceOf<Number>>& normal,
+                                                Same<Number> tangential_speed,
+                                                const Same<PairParametersOf<Number>>& p) const {
+    const Number critical = p.tangential_damping_ratio * normal.stiffness_mass_root;
+    const Number stable = c.reduced_mass / Number(21 * time_step);  // (2/7)/6 = 1/21
+    const Number viscous = critical < stable ? critical : stable;
+    const Number sliding = sliding_limit(normal, p) / (tangential_speed + tiny<Number>);
     return sliding < viscous ? sliding : viscous;
   }
 };
@@ -67,17 +85,20 @@ struct Mindlin {
   Real time_step = 0;  ///< particle step [s]
 
   /// `spring` lies across the normal.
-  KOKKOS_FORCEINLINE_FUNCTION SpringForce operator()(const ContactState&, const NormalForce& normal,
-                                                     const Vec3& tangential_velocity, const Vec3& spring,
-                                                     const PairParameters& p) const {
-    const Vec3 half_step = (0.5 * time_step) * tangential_velocity;
-    const Vec3 reached = spring + half_step;
-    const Real stiffness = p.tangential_stiffness_ratio * normal.stiffness;
-    const Real damping = 0.5 * p.tangential_damping_ratio * normal.damping;
-    const Real limit = sliding_limit(normal, p);
-    const Vec3 held = shorten(stiffness * Kokkos::sqrt(norm_squared(reached)), limit) * reached;
-    const Vec3 wanted = -stiffness * held - damping * tangential_velocity;
-    return {shorten(Kokkos::sqrt(norm_squared(wanted)), limit) * wanted, held + half_step};
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION SpringForceOf<Number> operator()(
+      const ContactStateOf<Number>&, const Same<NormalForceOf<Number>>& normal,
+      const Same<Vector3<Number>>& tangential_velocity, const Vec3& spring,
+      const Same<PairParametersOf<Number>>& p) const {
+    const Vector3<Number> half_step = Number(0.5 * time_step) * tangential_velocity;
+    const Vec3 reached = spring + convert<Real>(half_step);
+    const Number stiffness = p.tangential_stiffness_ratio * normal.stiffness;
+    const Number damping = Number(0.5) * p.tangential_damping_ratio * normal.damping;
+    const Number limit = sliding_limit(normal, p);
+    const Number length = Kokkos::sqrt(norm_squared(convert<Number>(reached)));
+    const Vec3 held = static_cast<Real>(shorten(stiffness * length, limit)) * reached;
+    const Vector3<Number> wanted = -stiffness * convert<Number>(held) - damping * tangential_velocity;
+    return {shorten(Kokkos::sqrt(norm_squared(wanted)), limit) * wanted, held + convert<Real>(half_step)};
   }
 };
 
@@ -93,27 +114,29 @@ struct MindlinDeresiewicz {
 
   Real time_step = 0;  ///< particle step [s]
 
-  KOKKOS_FORCEINLINE_FUNCTION SpringForce operator()(const ContactState& c, const NormalForce& normal,
-                                                     const Vec3& tangential_velocity, const Vec3& spring,
-                                                     const PairParameters& p) const {
-    constexpr Real damping_ratio_factor = 1.0540925533894598;  // 2√5/(3√2)
-    const Vec3 half_step = (0.5 * time_step) * tangential_velocity;
-    const Vec3 reached = spring + half_step;
-    const Real limit = sliding_limit(normal, p);
-    const Real longest = p.sliding_friction * c.overlap / p.tangential_stiffness_ratio;
-    const Real length = Kokkos::sqrt(norm_squared(reached));
-    const Vec3 held = shorten(length, longest) * reached;
-    const Real held_length = length < longest ? length : longest;
-    const Real left = length < longest ? 1 - length / longest : Real(0);
-    const Real root = Kokkos::sqrt(left);
-    const Real elastic = limit * (1 - left * root) / (held_length + 1e-300);
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION SpringForceOf<Number> operator()(
+      const ContactStateOf<Number>& c, const Same<NormalForceOf<Number>>& normal,
+      const Same<Vector3<Number>>& tangential_velocity, const Vec3& spring,
+      const Same<PairParametersOf<Number>>& p) const {
+    constexpr auto damping_ratio_factor = Number(1.0540925533894598);  // 2√5/(3√2)
+    const Vector3<Number> half_step = Number(0.5 * time_step) * tangential_velocity;
+    const Vec3 reached = spring + convert<Real>(half_step);
+    const Number limit = sliding_limit(normal, p);
+    const Number longest = p.sliding_friction * c.overlap / p.tangential_stiffness_ratio;
+    const Number length = Kokkos::sqrt(norm_squared(convert<Number>(reached)));
+    const Vec3 held = static_cast<Real>(shorten(length, longest)) * reached;
+    const Number held_length = length < longest ? length : longest;
+    const Number left = length < longest ? 1 - length / longest : Number(0);
+    const Number root = Kokkos::sqrt(left);
+    const Number elastic = limit * (1 - left * root) / (held_length + tiny<Number>);
     // µ_s F_n/ξ_max = F_n 4 G*/(E* δ), without µ_s, which may be zero.
-    const Real force = normal.force > 0 ? normal.force : Real(0);
-    const Real damping =
+    const Number force = normal.force > 0 ? normal.force : Number(0);
+    const Number damping =
         damping_ratio_factor * p.damping_ratio *
         Kokkos::sqrt(6 * c.reduced_mass * force * p.tangential_stiffness_ratio / c.overlap * root);
-    const Vec3 wanted = -elastic * held - damping * tangential_velocity;
-    return {shorten(Kokkos::sqrt(norm_squared(wanted)), limit) * wanted, held + half_step};
+    const Vector3<Number> wanted = -elastic * convert<Number>(held) - damping * tangential_velocity;
+    return {shorten(Kokkos::sqrt(norm_squared(wanted)), limit) * wanted, held + convert<Real>(half_step)};
   }
 };
 

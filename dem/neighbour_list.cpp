@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "dem/engine_arrays.hpp"
+#include "dem/memory_order.hpp"
 
 namespace pellicle::dem {
 namespace {
@@ -81,9 +82,11 @@ struct FindRows {
       PositionRadius self = particles.position_radius(p);
       self.radius = reach_of(self, list.displacement(p));
       const std::int32_t row = n;
+      // Partners from `first` to p have p in their rows.
+      const Index first = list.half ? p / list_block * list_block : p;
       visit_runs(grid, cell_start, self, [&](std::int32_t from, std::int32_t to) {
         for (std::int32_t start = from; start < to; start += part) {
-          const std::int32_t m = Kokkos::min(part, to - start);
+          const std::int32_t m = to - start < part ? to - start : part;
           bool hit[part];
           test(self, start, m, hit);
           largest = Kokkos::max(largest, n + m);
@@ -92,13 +95,19 @@ struct FindRows {
             for (std::int32_t i = 0; i < m; ++i) {
               const std::int32_t q = particle[start + i];
               out[n] = q;
-              n += static_cast<std::int32_t>(hit[i]) & static_cast<std::int32_t>(q != p);
+              n += static_cast<std::int32_t>(hit[i]) & static_cast<std::int32_t>((q > p) | (q < first));
             }
           } else {
-            for (std::int32_t i = 0; i < m; ++i) n += hit[i] && particle[start + i] != p ? 1 : 0;
+            for (std::int32_t i = 0; i < m; ++i) {
+              const std::int32_t q = particle[start + i];
+              n += hit[i] && (q > p || q < first) ? 1 : 0;
+            }
           }
         }
       });
+      if (list.half && n <= capacity && particles.velocity_spin(p).inverse_mass == 0) {
+        n = drop_fixed(out, row, n);
+      }
       list.offset(p) = n - row;
     }
     block_start(b) = n;
@@ -106,6 +115,17 @@ struct FindRows {
 
  private:
   static constexpr std::int32_t part = 64;
+
+  /// Takes the fixed partners out of a row; returns where it ends then.
+  KOKKOS_INLINE_FUNCTION std::int32_t drop_fixed(std::int32_t* out, std::int32_t row,
+                                                 std::int32_t end) const {
+    std::int32_t kept = row;
+    for (std::int32_t e = row; e < end; ++e) {
+      const std::int32_t q = out[e];
+      if (particles.velocity_spin(q).inverse_mass != 0) out[kept++] = q;
+    }
+    return kept;
+  }
 
   /// Which of the slots start … start + m may touch before the next build. Works on whole vectors: entries from m on
   /// come from beyond and mean nothing.
@@ -206,6 +226,10 @@ void NeighbourSearch::find_order(const Particles& particles, Real time_step, Nei
   sort_into_cells(grid_, particles, cell_start_, order_);
 }
 
+void NeighbourSearch::find_memory_order(const DeviceArray<std::int32_t>& memory_order) {
+  dem::find_memory_order(grid_, cell_start_, order_, cube_start_, memory_order);
+}
+
 void NeighbourSearch::build(const Particles& particles, Real time_step, NeighbourList& list,
                             const DeviceArray<Real>& scratch) {
   find_order(particles, time_step, list);
@@ -268,7 +292,8 @@ void NeighbourSearch::find_rows(const Particles& particles, NeighbourList& list,
 }
 
 std::size_t NeighbourSearch::bytes() const {
-  return bytes_of(cell_start_) + bytes_of(order_) + bytes_of(staging_) + bytes_of(block_start_);
+  return bytes_of(cell_start_) + bytes_of(order_) + bytes_of(staging_) + bytes_of(block_start_) +
+         bytes_of(cube_start_);
 }
 
 void wrap_periodic(const Domain& domain, const Particles& particles) {

@@ -1,6 +1,8 @@
 // Who may touch whom until somebody has moved too far: Verlet lists from a cell grid, on the device.
 #pragma once
 
+#include <type_traits>
+
 #include "core/types.hpp"
 #include "core/views.hpp"
 #include "dem/cell_grid.hpp"
@@ -16,10 +18,20 @@ struct SkinOptions {
   Real largest_fraction = 0.40;   ///< of the largest radius
 };
 
-/// Full lists (each pair twice, once at each particle) in compressed rows. Row p is entries offset(p) … offset(p+1).
+/// Whether lists have pairs once where they can: on a CPU that halves the work; a GPU would need atomics.
+inline constexpr bool half_lists = std::is_same_v<Device, Host>;
+
+/// Particles a block of half lists. Enough that most pairs are within a block, few enough that its sums stay in the
+/// second-level cache and threads find blocks to share.
+inline constexpr Index list_block = 1024;
+
+/// Lists in compressed rows: row p is entries offset(p) … offset(p+1). Full lists have each pair twice, once at each
+/// particle. Half lists have the pairs of particles of one block, list_block particles next to each other in memory, once,
+/// at the first of the two, those of particles of two blocks twice, and none of two fixed particles.
 /// A slot keeps its meaning until the next build, so laws with history can keep an array per slot.
 struct NeighbourList {
   Index count = 0;                         ///< particles
+  bool half = half_lists;                  ///< to be set before a build
   DeviceArray<std::int32_t> offset;        ///< count + 1
   DeviceArray<std::int32_t> partner;       ///< particle index, row by row, ordered by cell, then by id
   DeviceArray<Displacement> displacement;  ///< of every particle since the build
@@ -45,6 +57,9 @@ class NeighbourSearch {
   /// Particle indices in canonical order, as of the last build or search for it: the order to sort memory by.
   const DeviceArray<std::int32_t>& order() const { return order_; }
 
+  /// The order to keep particles in memory by, as of the last build or search for the order of the cells.
+  void find_memory_order(const DeviceArray<std::int32_t>& memory_order);
+
   /// The cells of the last build.
   const CellGrid& grid() const { return grid_; }
   /// Slots of the canonical order at which its cells begin.
@@ -64,6 +79,7 @@ class NeighbourSearch {
   DeviceArray<std::int32_t> cell_start_;   // cells + 1
   DeviceArray<std::int32_t> order_;        // sorted slot -> particle
   DeviceArray<std::int32_t> staging_;      // rows of the blocks of one round
+  DeviceArray<std::int32_t> cube_start_;   // cubes of cells
   DeviceArray<std::int32_t> block_start_;  // in the entries of the round
   std::int32_t block_capacity_ = 0;        // entries that a block has room for in staging_
 };

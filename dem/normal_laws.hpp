@@ -15,14 +15,16 @@ struct Hertz {
 
   bool clip = true;
 
-  KOKKOS_FORCEINLINE_FUNCTION NormalForce operator()(const ContactState& c, const PairParameters& p) const {
-    constexpr Real damping_factor = 1.8257418583505538;  // 2 √(5/6)
-    const Real stiffness = 2 * p.effective_youngs_modulus * Kokkos::sqrt(c.reduced_radius * c.overlap);
-    const Real root = Kokkos::sqrt(stiffness * c.reduced_mass);
-    const Real damping = damping_factor * p.damping_ratio * root;
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION NormalForceOf<Number> operator()(
+      const ContactStateOf<Number>& c, const Same<PairParametersOf<Number>>& p) const {
+    constexpr auto damping_factor = Number(1.8257418583505538);  // 2 √(5/6)
+    const Number stiffness = 2 * p.effective_youngs_modulus * Kokkos::sqrt(c.reduced_radius * c.overlap);
+    const Number root = Kokkos::sqrt(stiffness * c.reduced_mass);
+    const Number damping = damping_factor * p.damping_ratio * root;
     // (4/3) E* √R* δ^(3/2) = (2/3) S_n δ
-    const Real force = (2.0 / 3.0) * stiffness * c.overlap + damping * c.approach_speed;
-    return {clip && force < 0 ? Real(0) : force, root, stiffness, damping};
+    const Number force = Number(2.0 / 3.0) * stiffness * c.overlap + damping * c.approach_speed;
+    return {clip && force < 0 ? Number(0) : force, root, stiffness, damping};
   }
 };
 
@@ -34,12 +36,14 @@ struct Linear {
 
   bool clip = true;
 
-  KOKKOS_FORCEINLINE_FUNCTION NormalForce operator()(const ContactState& c, const PairParameters& p) const {
-    const Real stiffness = p.normal_stiffness;
-    const Real root = Kokkos::sqrt(stiffness * c.reduced_mass);
-    const Real damping = 2 * p.damping_ratio * root;
-    const Real force = stiffness * c.overlap + damping * c.approach_speed;
-    return {clip && force < 0 ? Real(0) : force, root, stiffness, damping};
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION NormalForceOf<Number> operator()(
+      const ContactStateOf<Number>& c, const Same<PairParametersOf<Number>>& p) const {
+    const Number stiffness = p.normal_stiffness;
+    const Number root = Kokkos::sqrt(stiffness * c.reduced_mass);
+    const Number damping = 2 * p.damping_ratio * root;
+    const Number force = stiffness * c.overlap + damping * c.approach_speed;
+    return {clip && force < 0 ? Number(0) : force, root, stiffness, damping};
   }
 };
 

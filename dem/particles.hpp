@@ -9,12 +9,6 @@ namespace pellicle::dem {
 
 using Vec3f = Vector3<float>;
 
-/// The same vector in another type.
-template <class To, class From>
-KOKKOS_INLINE_FUNCTION constexpr Vector3<To> convert(const Vector3<From>& a) {
-  return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};
-}
-
 /// The nearest number of single precision, as a Real. Done on the bits, because gcc 12 takes a conversion to float and
 /// back for the number itself where it vectorises both.
 KOKKOS_INLINE_FUNCTION Real round_to_single(Real x) {

@@ -8,10 +8,13 @@
 namespace pellicle::dem {
 
 /// The rolling torque on a body, and its spring as the next step finds it.
-struct SpringTorque {
-  Vec3 torque;  ///< [N m]
-  Vec3 spring;  ///< [rad]
+template <class Number>
+struct SpringTorqueOf {
+  Vector3<Number> torque;  ///< [N m]
+  Vec3 spring;             ///< [rad]
 };
+
+using SpringTorque = SpringTorqueOf<Real>;
 
 /// No rolling resistance.
 struct NoRolling {
@@ -39,11 +42,14 @@ struct ConstantTorque {
   /// of contacts of each: the torque that stops ω_rel if all n act alike is |ω_rel|/(Δt Σ n/I). Two thirds of it are
   /// allowed: the motion (dem/motion.hpp) sees a spin predicted with half a step of the last torque, so that a cap c
   /// gives ω' = (1 − 3c/2) ω + (c/2) ω_before, which changes sign for c > 2/3 and no longer decays at c = 1.
-  KOKKOS_FORCEINLINE_FUNCTION Real operator()(const ContactState& c, Real normal_force, Real relative_spin,
-                                              Real spin_compliance, const PairParameters& p) const {
-    const Real torque = p.rolling_friction * c.reduced_radius * (normal_force > 0 ? normal_force : Real(0));
-    const Real steady = torque / (relative_spin + 1e-300);
-    const Real stopping = (2.0 / 3.0) / (time_step * spin_compliance + 1e-300);
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION Number operator()(const ContactStateOf<Number>& c, Same<Number> normal_force,
+                                                Same<Number> relative_spin, Same<Number> spin_compliance,
+                                                const Same<PairParametersOf<Number>>& p) const {
+    const Number torque =
+        p.rolling_friction * c.reduced_radius * (normal_force > 0 ? normal_force : Number(0));
+    const Number steady = torque / (relative_spin + tiny<Number>);
+    const Number stopping = Number(2.0 / 3.0) / (Number(time_step) * spin_compliance + tiny<Number>);
     return steady < stopping ? steady : stopping;
   }
 };
@@ -63,17 +69,21 @@ struct Epsd2 {
 
   Real time_step = 0;  ///< particle step [s]
 
-  KOKKOS_FORCEINLINE_FUNCTION SpringTorque operator()(const ContactState& c, const NormalForce& normal,
-                                                      const Vec3& n, const Vec3& relative_spin,
-                                                      const Vec3& spring, const PairParameters& p) const {
-    const Vec3 rolling = relative_spin - dot(relative_spin, n) * n;
-    const Vec3 half_step = (0.5 * time_step) * rolling;
-    const Vec3 reached = spring + half_step;
-    const Real stiffness =
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION SpringTorqueOf<Number> operator()(
+      const ContactStateOf<Number>& c, const Same<NormalForceOf<Number>>& normal,
+      const Same<Vector3<Number>>& n, const Same<Vector3<Number>>& relative_spin, const Vec3& spring,
+      const Same<PairParametersOf<Number>>& p) const {
+    const Vector3<Number> rolling = relative_spin - dot(relative_spin, n) * n;
+    const Vector3<Number> half_step = Number(0.5 * time_step) * rolling;
+    const Vec3 reached = spring + convert<Real>(half_step);
+    const Number stiffness =
         p.tangential_stiffness_ratio * normal.stiffness * c.reduced_radius * c.reduced_radius;
-    const Real limit = p.rolling_friction * c.reduced_radius * (normal.force > 0 ? normal.force : Real(0));
-    const Vec3 held = shorten(stiffness * Kokkos::sqrt(norm_squared(reached)), limit) * reached;
-    return {-stiffness * held, held + half_step};
+    const Number limit =
+        p.rolling_friction * c.reduced_radius * (normal.force > 0 ? normal.force : Number(0));
+    const Number length = Kokkos::sqrt(norm_squared(convert<Number>(reached)));
+    const Vec3 held = static_cast<Real>(shorten(stiffness * length, limit)) * reached;
+    return {-stiffness * convert<Number>(held), held + convert<Real>(half_step)};
   }
 };
 

@@ -32,7 +32,7 @@ inline std::vector<Grain> grains(const dem::Particles& particles) {
   result.reserve(static_cast<std::size_t>(particles.count));
   for (Index p = 0; p < particles.count; ++p) {
     result.push_back({motion(p).id, place(p).position(), motion(p).velocity(), motion(p).spin(),
-                      place(p).radius, mass(p), dem::convert<Real>(linear(p)), dem::convert<Real>(angular(p)),
+                      place(p).radius, mass(p), convert<Real>(linear(p)), convert<Real>(angular(p)),
                       motion(p).inverse_mass == 0});
   }
   std::sort(result.begin(), result.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });

@@ -2,7 +2,9 @@
 // with 30 digits from the equations of docs/theory/dem.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "dem/contact_laws.hpp"
@@ -77,8 +79,9 @@ struct LoopResult {
   WallReport wall_report;
 };
 
+/// `half`: over half lists, in single precision, instead of full lists in double precision.
 LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& seeds,
-                    std::int32_t touching = 0) {
+                    std::int32_t touching = 0, bool half = false) {
   const std::size_t n = seeds.size();
   ContactInput in;
   in.domain = setup.domain;
@@ -97,8 +100,8 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
     const Real mass =
         setup.materials[static_cast<std::size_t>(s.material)].density * 4 / 3 * M_PI * r * r * r;
     place(p) = {s.position.x, s.position.y, s.position.z, r};
-    motion(p) = {s.velocity.x, s.velocity.y, s.velocity.z, s.spin.x,           s.spin.y,
-                 s.spin.z,     1 / mass,     s.material,   static_cast<int>(p)};
+    motion(p) = {s.velocity.x, s.velocity.y,           s.velocity.z, s.spin.x,           s.spin.y,
+                 s.spin.z,     s.fixed ? 0 : 1 / mass, s.material,   static_cast<int>(p)};
     largest = std::max(largest, r);
     smallest = std::min(smallest, r);
     in.one_particle_material = in.one_particle_material && s.material == 0;
@@ -114,6 +117,7 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   in.materials = static_cast<Index>(setup.materials.size());
   in.kick = setup.time_step;
   NeighbourSearch search(setup.domain, setup.skin, smallest, largest);
+  in.list.half = half;
   search.build(in.particles, setup.time_step, in.list,
                DeviceArray<Real>("test::contact_laws::scratch", NeighbourSearch::scratch_size(n)));
   walls.move_to(0);
@@ -146,10 +150,14 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   return result;
 }
 
-void expect_close(const Vec3& value, const Vec3& expected, const char* what) {
-  // The overlap is a difference of lengths a hundred times larger and carries a power of 1.5; torques at rest are
-  // differences of slips: four digits beyond the 16 of double.
-  const Real tolerance = 1e-12 * norm(expected);
+/// The overlap is a difference of lengths a hundred times larger and carries a power of 1.5; torques at rest are
+/// differences of slips: four digits beyond the 16 of double.
+constexpr Real close = 1e-12;
+/// Single precision: 30 roundings of 6e-8, and slips that are a twentieth of the velocities they come from.
+constexpr Real close_in_single = 4e-5;
+
+void expect_close(const Vec3& value, const Vec3& expected, const char* what, Real relative = close) {
+  const Real tolerance = relative * norm(expected);
   EXPECT_LE(norm(value - expected), tolerance)
       << what << ": (" << value.x << ", " << value.y << ", " << value.z << ") instead of (" << expected.x
       << ", " << expected.y << ", " << expected.z << ")";
@@ -213,16 +221,18 @@ TEST(ContactLoop, PairsAgreeWithHandCalculation) {
         {x, c.velocity[0], c.spin[0], 1e-3, 0, false},
         {x + Vec3{0.0012, 0.0016, 0.002}, c.velocity[1], c.spin[1], 2e-3, c.second_material, false}};
     // A contact counts as one for the cap of the rolling torque when it has just begun (0) and when it goes on (1).
-    for (const int touching : {0, 1}) {
-      const LoopResult result = run_loop(pair_setup(), seeds, touching);
-      expect_close(result.force[0], c.force, "force");
-      expect_close(result.force[1], -c.force, "force on the second");
-      expect_close(result.torque[0], c.torque[0], "torque");
-      expect_close(result.torque[1], c.torque[1], "torque on the second");
+    for (const int touching : {0, 1, 2, 3}) {
+      const bool half = half_lists && touching >= 2;
+      const Real relative = half ? close_in_single : close;
+      const LoopResult result = run_loop(pair_setup(), seeds, touching % 2, half);
+      expect_close(result.force[0], c.force, "force", relative);
+      expect_close(result.force[1], -c.force, "force on the second", relative);
+      expect_close(result.torque[0], c.torque[0], "torque", relative);
+      expect_close(result.torque[1], c.torque[1], "torque on the second", relative);
       EXPECT_EQ(result.touching, (std::vector<std::int32_t>{1, 1}));
       EXPECT_EQ(result.report.touching, 2);
       // δ = 3 mm − √8 mm.
-      EXPECT_NEAR(result.report.largest_overlap, 3 - std::sqrt(8.0), 1e-12);
+      EXPECT_NEAR(result.report.largest_overlap, 3 - std::sqrt(8.0), relative);
     }
   }
 }
@@ -274,7 +284,8 @@ TEST(ContactLoop, CapOfTheRollingTorqueIsSharedAmongContacts) {
 
 TEST(ContactLoop, PairForcesAreOppositeToTheLastBit) {
   // 300 pairs of random size, place, speed and spin, far from each other; frictionless ones show the rolling torque.
-  for (const bool friction : {true, false}) {
+  for (const int which : {0, 1, 2, 3}) {
+    const bool friction = which % 2 == 0;
     auto setup = tests::glass_setup({1, 1, 1}, 1e-5, 0.7, friction ? 0.3 : 0.0, 0.02);
     setup.domain.periodic = {1, 0, 1};  // some pairs reach over the edge
     std::vector<ParticleSeed> seeds;
@@ -290,7 +301,7 @@ TEST(ContactLoop, PairForcesAreOppositeToTheLastBit) {
       seeds.push_back({x - 0.5 * d, random_vector(3, pair), 100.0 * random_vector(4, pair), ri, 0, false});
       seeds.push_back({x + 0.5 * d, random_vector(5, pair), 100.0 * random_vector(6, pair), rj, 0, false});
     }
-    const LoopResult result = run_loop(setup, seeds);
+    const LoopResult result = run_loop(setup, seeds, 0, half_lists && which >= 2);
     for (std::size_t p = 0; p < seeds.size(); p += 2) {
       ASSERT_EQ(result.touching[p], 1) << p;
       ASSERT_GT(norm(result.force[p]), 0);
@@ -299,6 +310,38 @@ TEST(ContactLoop, PairForcesAreOppositeToTheLastBit) {
       ASSERT_GT(norm(result.torque[p]), 0);
       EXPECT_EQ(result.torque[p], -result.torque[p + 1]) << p;
     }
+  }
+}
+
+TEST(ContactLoop, HalfAndFullListsAgree) {
+  // 3000 particles, three blocks of half lists, much overlapping, of two materials; every tenth is fixed. Fixed particles do
+  // not touch each other.
+  auto setup = pair_setup();
+  setup.domain = {{{0, 0, 0}, {0.06, 0.06, 0.06}}, {1, 0, 1}, {}, {}};
+  std::vector<ParticleSeed> seeds;
+  for (int p = 0; p < 3000; ++p) {
+    const Vec3 x = 0.03 * (random_vector(1, p) + Vec3{1, 1, 1});
+    seeds.push_back({x, random_vector(2, p), 100.0 * random_vector(3, p),
+                     1e-3 * (1.5 + random_vector(4, p).x), p % 3 == 0 ? 2 : 0, p % 10 == 0});
+  }
+  // Near each other in memory what is near in space, or hardly a pair is within a block.
+  std::sort(seeds.begin(), seeds.end(),
+            [](const auto& a, const auto& b) { return a.position.z < b.position.z; });
+  const LoopResult full = run_loop(setup, seeds, 3);
+  const LoopResult half = run_loop(setup, seeds, 3, true);
+  EXPECT_EQ(half.touching, full.touching);
+  Real largest_force = 0;
+  Real largest_torque = 0;
+  for (std::size_t p = 0; p < seeds.size(); ++p) {
+    largest_force = std::max(largest_force, norm(full.force[p]));
+    largest_torque = std::max(largest_torque, norm(full.torque[p]));
+  }
+  ASSERT_GT(std::accumulate(full.touching.begin(), full.touching.end(), 0), 5000);
+  // A particle has up to 30 contacts, each with an error of 2.4e-6 of its force at most (test_contact_precision.cpp), that
+  // is much less than 1e-5 of the largest sum.
+  for (std::size_t p = 0; p < seeds.size(); ++p) {
+    EXPECT_LT(norm(half.force[p] - full.force[p]), 1e-5 * largest_force) << p;
+    EXPECT_LT(norm(half.torque[p] - full.torque[p]), 1e-5 * largest_torque) << p;
   }
 }
 

@@ -143,7 +143,7 @@ TEST(TurnSpring, FollowsABodyThatSpinsAboutTheNormal) {
   EXPECT_NEAR(norm(spring), 5e-6, 5e-6 * steps * 1e-16);
   // tan and angle differ by angle³/3 a step.
   EXPECT_LE(norm(spring - Vec3{-4e-6, 3e-6, 0}), 5e-6 * steps * angle * angle * angle / 2);
-  EXPECT_EQ(turn_spring({0, 0, 0}, {0, 0, 1}, angle), (Vec3{0, 0, 0}));
+  EXPECT_EQ(turn_spring(Vec3{0, 0, 0}, {0, 0, 1}, angle), (Vec3{0, 0, 0}));
 }
 
 }  // namespace

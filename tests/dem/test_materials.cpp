@@ -50,7 +50,7 @@ Real integrate_rebound(Real damping_ratio, bool clip) {
   pair.damping_ratio = damping_ratio;
   const Hertz law{clip};
   const auto force = [&](Real overlap, Real speed) {
-    return overlap > 0 ? law({overlap, 1, 1, speed}, pair).force : Real(0);
+    return overlap > 0 ? law(ContactState{overlap, 1, 1, speed}, pair).force : Real(0);
   };
   const Real h = 2e-4;  // contact lasts about 2.9
   Real x = 0;

@@ -48,7 +48,7 @@ struct Rows {
 
 /// Builds with particle order[s] of the cloud in place s of memory.
 Rows build_rows(const Domain& domain, const SkinOptions& skin, const std::vector<PlaneWall>& walls,
-                Real time_step, const Cloud& cloud, const std::vector<int>& order) {
+                Real time_step, const Cloud& cloud, const std::vector<int>& order, bool half = false) {
   const std::size_t n = cloud.place.size();
   Particles particles;
   particles.count = static_cast<Index>(n);
@@ -67,6 +67,7 @@ Rows build_rows(const Domain& domain, const SkinOptions& skin, const std::vector
       [](const PositionRadius& a, const PositionRadius& b) { return a.radius < b.radius; });
   NeighbourSearch search(domain, skin, small->radius, large->radius);
   NeighbourList list;
+  list.half = half;
   search.build(particles, time_step, list,
                DeviceArray<Real>("test::neighbour_list::scratch", NeighbourSearch::scratch_size(n)));
   WallList wall_list;
@@ -191,6 +192,32 @@ TEST_P(NeighbourList, DoesNotDependOnTheOrderInMemory) {
   EXPECT_EQ(rows.order, again.order);
 }
 
+TEST(HalfList, HasEachPairOfABlockOnceAndOthersTwice) {
+  // Three blocks, the last not full.
+  const Domain domain{{{0, 0, 0}, {0.06, 0.05, 0.04}}, {1, 0, 0}, {}, {}};
+  Cloud cloud = make_cloud(domain.box, 2 * list_block + 300, 0.001, 0.0015, 0, 12);
+  for (std::size_t p = 0; p < cloud.motion.size(); p += 10) cloud.motion[p].inverse_mass = 0;
+  std::vector<int> order(cloud.place.size());
+  std::iota(order.begin(), order.end(), 0);
+  const Rows full = build_rows(domain, {}, {}, 1e-4, cloud, order);
+  const Rows half = build_rows(domain, {}, {}, 1e-4, cloud, order, true);
+  std::size_t once = 0;
+  std::size_t twice = 0;
+  for (const auto& [p, row] : full.pairs) {
+    std::vector<int> expected;
+    for (const int q : row) {
+      if (p % 10 == 0 && q % 10 == 0) continue;
+      const bool together = p / list_block == q / list_block;
+      if (together && q < p) continue;
+      ++(together ? once : twice);
+      expected.push_back(q);
+    }
+    EXPECT_EQ(half.pairs.at(p), expected) << p;
+  }
+  EXPECT_GT(once, 1000U);
+  EXPECT_GT(twice, 1000U);
+}
+
 // Radius 2 mm: cells of at least 5.6 mm. A periodic axis of 12 mm has two cells, of 17 mm three, of 40 mm seven.
 INSTANTIATE_TEST_SUITE_P(
     All, NeighbourList,
@@ -260,6 +287,7 @@ Effort measure_effort(Real size_ratio, Real solids_fraction, bool periodic, bool
   const Domain domain{{{0, 0, 0}, {length, length, length}}, {periodic ? 1 : 0, periodic ? 1 : 0, 0}};
   NeighbourSearch search(domain, {}, hierarchical ? large / size_ratio : large, large);
   dem::NeighbourList list;
+  list.half = false;
   search.build(particles, 0, list,
                DeviceArray<Real>("test::neighbour_list::scratch", NeighbourSearch::scratch_size(n)));
   Kokkos::fence();

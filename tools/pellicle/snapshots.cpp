@@ -104,7 +104,7 @@ void write_particle_field(core::Hdf5File& file, const std::string& group, const 
   } else if (field == "speed") {
     put([&](std::size_t p) { return norm(motions[p].velocity()); });
   } else if (field == "acceleration") {
-    put([&](std::size_t p) { return dem::convert<Real>(particles.acceleration[p]); });
+    put([&](std::size_t p) { return convert<Real>(particles.acceleration[p]); });
   } else {
     throw std::logic_error("no particle field " + field);
   }

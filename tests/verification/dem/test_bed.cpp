@@ -65,8 +65,8 @@ TEST(Bed, ALatticeBetweenWallsThatNeedsNoFrictionStaysAtRest) {
     advance(engine, 10);
     engine.collect_report();
   }
-  // 20 ms, 100 times the time in which a sphere would fall through an overlap. The overlaps carry round-off of R over
-  // 1e-16 R/δ = 1e-12; forces then balance to about 1e-12 of the weight.
+  // 20 ms, 100 times the time in which a sphere would fall through an overlap. Forces of pairs are found in single
+  // precision, 6e-8, and so they balance, on a sphere that bears others as on one that does not.
   const Real fall_speed = g * 0.02;
   Real largest_speed = 0, largest_spin = 0, largest_shift = 0;
   const auto all = grains(engine.particles());
@@ -75,9 +75,9 @@ TEST(Bed, ALatticeBetweenWallsThatNeedsNoFrictionStaysAtRest) {
     largest_spin = std::max(largest_spin, norm(all[p].spin) * radius);
     largest_shift = std::max(largest_shift, norm(all[p].position - seeds[p].position));
   }
-  EXPECT_LT(largest_speed, 1e-11 * fall_speed);
-  EXPECT_LT(largest_spin, 1e-11 * fall_speed);
-  EXPECT_LT(largest_shift, 1e-11 * radius);
+  EXPECT_LT(largest_speed, 1e-8 * fall_speed);
+  EXPECT_LT(largest_spin, 1e-8 * fall_speed);
+  EXPECT_LT(largest_shift, 1e-8 * radius);
 }
 
 /// Mean speed of settled grains, and what else is on record about them.
