@@ -150,6 +150,8 @@ struct BlockContactKernel {
     using lanes::Real4;
     using lanes::Real8;
     const PositionRadius* const place = in.particles.position_radius.data();
+    // For gather_motion.
+    for (int k = 0; k < 8; ++k) __builtin_prefetch(in.particles.velocity_spin.data() + partner[k]);
     const auto own = [&](int k) { return lanes::load<Real4>(place + begin + owner[k]); };
     const auto other = [&](int k) { return lanes::load<Real4>(place + partner[k]); };
     Real8 a[4];
@@ -225,6 +227,8 @@ struct BlockContactKernel {
       held[k] = ((touches >> k) & 1) != 0;
     }
     for (int e = 0; e < components; ++e) {
+      // Of the next window: springs come from far away.
+      __builtin_prefetch(out.springs.component(e) + slot + pair_window, 1);
       const auto spring = lanes::load<lanes::Real8>(out.springs.component(e) + slot);
       lanes::pack(touches, lanes::keep(static_cast<lanes::Mask8>(goes_on), spring), w.spring[e] + n);
     }
