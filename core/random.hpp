@@ -11,7 +11,15 @@
 namespace pellicle::core {
 
 /// What a random number is for; two purposes never share a stream.
-enum class Purpose : std::uint32_t { fill_position = 1, fill_velocity, diameter, spray, capture, test, feed_position };
+enum class Purpose : std::uint32_t {
+  fill_position = 1,
+  fill_velocity,
+  diameter,
+  spray,
+  capture,
+  test,
+  feed_position
+};
 
 /// Four random words.
 struct RandomWords {
