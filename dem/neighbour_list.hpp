@@ -70,7 +70,7 @@ class NeighbourSearch {
  private:
   /// Room for whole vectors at the end.
   static std::size_t sorted_stride(std::size_t particles) { return (particles + 15) / 8 * 8; }
-  void find_rows(const Particles& particles, NeighbourList& list, const DeviceArray<Real>& sorted);
+  void find_rows(const Particles& particles, NeighbourList& list, const DeviceArray<Real>& scratch);
 
   SkinOptions skin_;
   Real smallest_radius_;
