@@ -29,6 +29,10 @@ class WallCandidates {
   /// out change nothing but the contacts with other places that they were.
   static constexpr int capacity = 32;
 
+  // The entries are not set: most particles need one or two of them, and zeroing all costs as much as a contact.
+  KOKKOS_INLINE_FUNCTION WallCandidates() {
+  }  // NOLINT(modernize-use-equals-default): a union's would be deleted
+
   KOKKOS_INLINE_FUNCTION int count() const { return count_; }
   KOKKOS_INLINE_FUNCTION bool crowded() const { return crowded_; }
   KOKKOS_INLINE_FUNCTION const WallCandidate& operator[](int i) const { return entry_[i]; }
@@ -88,7 +92,9 @@ class WallCandidates {
     return false;
   }
 
-  WallCandidate entry_[capacity];
+  union {
+    WallCandidate entry_[capacity];
+  };
   int count_ = 0;
   bool crowded_ = false;
 };
