@@ -127,7 +127,13 @@ Scene make_scene(const Bed& bed, int count, Real agitation) {
   const Real area = count / per_area;
   Scene scene;
   scene.size = {std::sqrt(area * 0.145 / 0.06), std::sqrt(area * 0.06 / 0.145), 0.3};
-  if (bed.walls && count == static_cast<int>(bed.positions.size())) scene.size = {bed.width, bed.depth, 0.3};
+  const auto one = static_cast<int>(bed.positions.size());
+  if (bed.walls && count % one == 0) {
+    // Whole copies, so that no wall cuts the bed and loosens it.
+    auto along = std::max(1, static_cast<int>(std::sqrt(count / one)));
+    while (count / one % along != 0) --along;
+    scene.size = {along * bed.width, count / one / along * bed.depth, 0.3};
+  }
   unsigned state = 12345;
   const auto random = [&state] {
     state = state * 1664525U + 1013904223U;
