@@ -200,7 +200,8 @@ void run_benchmark(const Options& options) {
   const auto built = bed.engine().list_builds() - builds;
   const auto totals = bed.engine().compute_totals();
   if (!options.output_file.empty()) write_bed(options.output_file, bed.engine().particles());
-  const Real neighbours_per_particle = bed.engine().neighbours_per_particle();
+  const int entries_per_pair = dem::half_lists ? 1 : 2;
+  const Real neighbours_per_particle = 2 * bed.engine().neighbours_per_particle() / entries_per_pair;
   bed.run(1);
   std::printf(
       "{\"particles\": %d, \"threads\": %d, \"steps\": %d, \"wall_seconds\": %.6f, \"cpu_seconds\": %.6f, "

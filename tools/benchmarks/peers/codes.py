@@ -108,7 +108,7 @@ def read_peer_log(folder, steps):
     return {"particles": particles, "steps": steps, "wall_seconds": wall,
             "cpu_seconds": float(clock["b"]) - float(clock["a"]), "contacts_per_particle_start": contacts[0],
             "contacts_per_particle_end": contacts[1], "list_builds": found[3, "builds"],
-            # Their lists hold each pair once, ours twice.
+            # Their lists hold each pair once.
             "neighbours_per_particle": 2 * found[3, "neighbours"]}
 
 
