@@ -99,69 +99,77 @@ struct CellGrid {
 /// Cells first … last along an axis, to be wrapped where the axis repeats.
 struct CellSpan {
   Index first, last;
-  bool whole;  ///< all cells of a periodic axis, each once
 };
 
-KOKKOS_INLINE_FUNCTION CellSpan find_span(const CellGrid& grid, const CellLevel& l, int axis, Real from,
-                                          Real to) {
-  const Index cells = l.cells[axis];
-  const Index first = grid.coordinate(l, axis, from);
-  const Index last = grid.coordinate(l, axis, to);
-  if (grid.domain.periodic[axis] == 0) {
-    return {CellGrid::limited(first, cells), CellGrid::limited(last, cells), false};
+/// The cells of an axis between two places in units of cells from the lower end of the box; all of a periodic axis once
+/// at most.
+template <bool Repeats>
+KOKKOS_INLINE_FUNCTION CellSpan find_span(bool periodic, Index cells, Real from, Real to) {
+  if (Repeats && periodic) {
+    const auto first = static_cast<Index>(Kokkos::floor(from == from ? from : 0));
+    const auto last = static_cast<Index>(Kokkos::floor(to == to ? to : 0));
+    return last - first + 1 < cells ? CellSpan{first, last} : CellSpan{0, cells - 1};
   }
-  if (last - first + 1 >= cells) return {0, cells - 1, true};
-  return {first, last, false};
+  const auto end = static_cast<Real>(cells - 1);
+  from = from > 0 ? from : 0;  // so is what is not a number
+  to = to > 0 ? to : 0;
+  return {static_cast<Index>(from < end ? from : end), static_cast<Index>(to < end ? to : end)};
 }
 
-/// Square of the distance between x and cell i of an axis [m²]; cells at the rim of an axis that does not repeat go on
-/// for ever.
-KOKKOS_INLINE_FUNCTION Real distance_squared(const CellGrid& grid, const CellLevel& l, int axis,
-                                             const CellSpan& span, Index i, Real x) {
-  const bool ends = grid.domain.periodic[axis] == 0;
-  if (span.whole) return 0;
-  const Real in_cells = (x - grid.box.min[axis]) * l.inverse_cell_size[axis];
-  Real d = 0;
-  if (in_cells < static_cast<Real>(i) && !(ends && i == 0)) d = static_cast<Real>(i) - in_cells;
-  if (in_cells > static_cast<Real>(i + 1) && !(ends && i == l.cells[axis] - 1))
-    d = in_cells - static_cast<Real>(i + 1);
-  d *= l.cell_size[axis];
+/// Square of the distance [m²] between a place, in units of cells, and cell i of an axis; 0 where all of a periodic axis
+/// is looked at.
+template <bool Repeats>
+KOKKOS_INLINE_FUNCTION Real distance_squared(bool whole, Real place, Index i, Real cell_size) {
+  if (Repeats && whole) return 0;
+  const Real before = static_cast<Real>(i) - place;
+  const Real after = -1 - before;
+  const Real d = cell_size * Kokkos::max(Kokkos::max(before, after), 0.0);
   return d * d;
 }
 
 /// Calls scan(begin, end) for the runs of sorted slots that may hold a neighbour of `self` (its radius is its reach),
-/// level by level, always in the same order.
-template <class Scan>
+/// level by level, always in the same order. `Repeats`: some axis may.
+template <bool Repeats, class Scan>
 KOKKOS_INLINE_FUNCTION void visit_runs(const CellGrid& grid, const DeviceArray<std::int32_t>& cell_start,
                                        const PositionRadius& self, const Scan& scan) {
-  const auto wrapped = [](Index c, Index cells) { return c < 0 ? c + cells : (c >= cells ? c - cells : c); };
+  const auto wrapped = [](Index c, Index cells) {
+    return !Repeats ? c : c < 0 ? c + cells : (c >= cells ? c - cells : c);
+  };
+  const Index3& periodic = grid.domain.periodic;
+  const std::int32_t* const start = cell_start.data();
   for (int level = 0; level < grid.levels; ++level) {
     const CellLevel& l = grid.level[level];
     if (l.count == 0) continue;
     // A little more than is needed, so that no rounding below loses a cell.
     const Real range = (1 + 1e-9) * (self.radius + l.largest_reach);
-    const CellSpan ys = find_span(grid, l, 1, self.y - range, self.y + range);
-    const CellSpan zs = find_span(grid, l, 2, self.z - range, self.z + range);
+    const Vec3 at{(self.x - grid.box.min.x) * l.inverse_cell_size.x,
+                  (self.y - grid.box.min.y) * l.inverse_cell_size.y,
+                  (self.z - grid.box.min.z) * l.inverse_cell_size.z};
+    const Real y_range = range * l.inverse_cell_size.y;
+    const Real z_range = range * l.inverse_cell_size.z;
+    const CellSpan ys = find_span<Repeats>(periodic.y != 0, l.cells.y, at.y - y_range, at.y + y_range);
+    const CellSpan zs = find_span<Repeats>(periodic.z != 0, l.cells.z, at.z - z_range, at.z + z_range);
+    const bool all_y = ys.last - ys.first + 1 >= l.cells.y;
+    const bool all_z = zs.last - zs.first + 1 >= l.cells.z;
+    const Index n = l.cells.x;
     for (Index k = zs.first; k <= zs.last; ++k) {
-      const Real left = range * range - distance_squared(grid, l, 2, zs, k, self.z);
+      const Real left = range * range - distance_squared<Repeats>(all_z, at.z, k, l.cell_size.z);
       for (Index j = ys.first; j <= ys.last; ++j) {
         // The part of this row of cells that a sphere of that range reaches.
-        const Real half_squared = left - distance_squared(grid, l, 1, ys, j, self.y);
+        const Real half_squared = left - distance_squared<Repeats>(all_y, at.y, j, l.cell_size.y);
         if (half_squared < 0) continue;
-        const Real half = Kokkos::sqrt(half_squared);
-        const CellSpan xs = find_span(grid, l, 0, self.x - half, self.x + half);
-        const Index row =
-            l.first_cell + l.cells.x * (wrapped(j, l.cells.y) + l.cells.y * wrapped(k, l.cells.z));
+        const Real half = Kokkos::sqrt(half_squared) * l.inverse_cell_size.x;
+        const CellSpan xs = find_span<Repeats>(periodic.x != 0, n, at.x - half, at.x + half);
+        const Index row = l.first_cell + n * (wrapped(j, l.cells.y) + l.cells.y * wrapped(k, l.cells.z));
         // Cells of a row lie side by side in the sorted order: one run, or two where it crosses a periodic side.
-        const Index n = l.cells.x;
-        if (xs.first < 0) {
-          scan(cell_start(row + xs.first + n), cell_start(row + n));
-          scan(cell_start(row), cell_start(row + xs.last + 1));
-        } else if (xs.last >= n) {
-          scan(cell_start(row + xs.first), cell_start(row + n));
-          scan(cell_start(row), cell_start(row + xs.last - n + 1));
+        if (Repeats && xs.first < 0) {
+          scan(start[row + xs.first + n], start[row + n]);
+          scan(start[row], start[row + xs.last + 1]);
+        } else if (Repeats && xs.last >= n) {
+          scan(start[row + xs.first], start[row + n]);
+          scan(start[row], start[row + xs.last - n + 1]);
         } else {
-          scan(cell_start(row + xs.first), cell_start(row + xs.last + 1));
+          scan(start[row + xs.first], start[row + xs.last + 1]);
         }
       }
     }

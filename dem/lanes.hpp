@@ -75,6 +75,19 @@ inline Mask8 less(const Real8& a, const Real8& b) {
 #endif
 }
 
+/// Lanes below `first` or above `last`.
+inline Mask8 outside(const Int8& a, std::int32_t first, std::int32_t last) {
+#ifdef PELLICLE_AVX512
+  const auto v = reinterpret_cast<__m256i>(a);
+  return _mm256_cmplt_epi32_mask(v, _mm256_set1_epi32(first)) |
+         _mm256_cmpgt_epi32_mask(v, _mm256_set1_epi32(last));
+#else
+  unsigned mask = 0;
+  for (int k = 0; k < 8; ++k) mask |= (a[k] < first || a[k] > last ? 1U : 0U) << k;
+  return static_cast<Mask8>(mask);
+#endif
+}
+
 inline int count(Mask8 mask) { return std::popcount(mask); }
 
 /// Writes the lanes of a mask side by side; all eight places from `to` on may be written over.

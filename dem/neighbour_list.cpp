@@ -8,12 +8,10 @@
 #include "core/error.hpp"
 #include "dem/engine_arrays.hpp"
 #include "dem/memory_order.hpp"
+#include "dem/row_search.hpp"
 
 namespace pellicle::dem {
 namespace {
-
-/// Particles whose rows are searched by one work item and stored side by side.
-constexpr Index row_block = std::is_same_v<Device, Host> ? 64 : 1;
 
 /// Blocks whose rows are searched before they are moved to their place. The rows of a round stay in the cache and the
 /// memory they need is small beside the lists; on a GPU a round has to keep all of it busy.
@@ -35,16 +33,6 @@ void set_allowances(const Particles& particles, Real reach_time, Real smallest, 
       });
 }
 
-/// x, y, z and reach in sorted order, one array after the other.
-struct SortedPlaces {
-  DeviceArray<Real> memory;
-  std::size_t stride;
-  KOKKOS_INLINE_FUNCTION Real* x() const { return memory.data(); }
-  KOKKOS_INLINE_FUNCTION Real* y() const { return memory.data() + stride; }
-  KOKKOS_INLINE_FUNCTION Real* z() const { return memory.data() + 2 * stride; }
-  KOKKOS_INLINE_FUNCTION Real* reach() const { return memory.data() + 3 * stride; }
-};
-
 void gather_sorted(const Particles& particles, const DeviceArray<std::int32_t>& order,
                    const DeviceArray<Displacement>& displacement, const SortedPlaces& sorted) {
   const auto place = particles.position_radius;
@@ -59,93 +47,21 @@ void gather_sorted(const Particles& particles, const DeviceArray<std::int32_t>& 
       });
 }
 
-/// Rows of the particles of one block, one after the other, into the block's part of the staging memory.
+/// Searches the rows of some blocks; returns the room that the fullest block needs.
 template <bool Repeats>
-struct FindRows {
-  CellGrid grid;
-  DeviceArray<std::int32_t> cell_start, order;
-  SortedPlaces sorted;
-  Particles particles;
-  NeighbourList list;
-  Index first_block;
-  DeviceArray<std::int32_t> staging, block_start;
-  std::int32_t capacity;  // entries that a block has room for
-
-  /// `largest` is the room that the fullest block needs.
-  KOKKOS_INLINE_FUNCTION void operator()(const Index b, std::int32_t& largest) const {
-    std::int32_t* const out = staging.data() + static_cast<std::size_t>(b) * capacity;
-    const std::int32_t* const particle = order.data();
-    std::int32_t n = 0;
-    const Index begin = (first_block + b) * row_block;
-    const Index end = Kokkos::min(begin + row_block, particles.count);
-    for (Index p = begin; p < end; ++p) {
-      PositionRadius self = particles.position_radius(p);
-      self.radius = reach_of(self, list.displacement(p));
-      const std::int32_t row = n;
-      // Partners from `first` to p have p in their rows.
-      const Index first = list.half ? p / list_block * list_block : p;
-      visit_runs(grid, cell_start, self, [&](std::int32_t from, std::int32_t to) {
-        for (std::int32_t start = from; start < to; start += part) {
-          const std::int32_t m = to - start < part ? to - start : part;
-          bool hit[part];
-          test(self, start, m, hit);
-          largest = Kokkos::max(largest, n + m);
-          if (n + m <= capacity) {
-            // Without a branch: whether a candidate is in reach cannot be predicted.
-            for (std::int32_t i = 0; i < m; ++i) {
-              const std::int32_t q = particle[start + i];
-              out[n] = q;
-              n += static_cast<std::int32_t>(hit[i]) & static_cast<std::int32_t>((q > p) | (q < first));
-            }
-          } else {
-            for (std::int32_t i = 0; i < m; ++i) {
-              const std::int32_t q = particle[start + i];
-              n += hit[i] && (q > p || q < first) ? 1 : 0;
-            }
-          }
-        }
-      });
-      if (list.half && n <= capacity && particles.velocity_spin(p).inverse_mass == 0) {
-        n = drop_fixed(out, row, n);
-      }
-      list.offset(p) = n - row;
-    }
-    block_start(b) = n;
-  }
-
- private:
-  static constexpr std::int32_t part = 64;
-
-  /// Takes the fixed partners out of a row; returns where it ends then.
-  KOKKOS_INLINE_FUNCTION std::int32_t drop_fixed(std::int32_t* out, std::int32_t row,
-                                                 std::int32_t end) const {
-    std::int32_t kept = row;
-    for (std::int32_t e = row; e < end; ++e) {
-      const std::int32_t q = out[e];
-      if (particles.velocity_spin(q).inverse_mass != 0) out[kept++] = q;
-    }
-    return kept;
-  }
-
-  /// Which of the slots start … start + m may touch before the next build. Works on whole vectors: entries from m on
-  /// come from beyond and mean nothing.
-  KOKKOS_INLINE_FUNCTION void test(const PositionRadius& self, std::int32_t start, std::int32_t m,
-                                   bool* hit) const {
-    constexpr std::int32_t width = std::is_same_v<Device, Host> ? 8 : 1;
-    const Real* const x = sorted.x() + start;
-    const Real* const y = sorted.y() + start;
-    const Real* const z = sorted.z() + start;
-    const Real* const reach = sorted.reach() + start;
-    for (std::int32_t v = 0; v < m; v += width) {
-      for (std::int32_t i = v; i < v + width; ++i) {
-        Vec3 d{x[i] - self.x, y[i] - self.y, z[i] - self.z};
-        if constexpr (Repeats) d = grid.domain.shortest(d);
-        const Real r = self.radius + reach[i];
-        hit[i] = norm_squared(d) < r * r;
-      }
-    }
-  }
-};
+std::int32_t search_rows(const char* label, const RowSearch& search, Index blocks) {
+#ifndef KOKKOS_ENABLE_CUDA
+  using Kernel = FindRowsInLanes<Repeats>;
+#else
+  using Kernel = FindRows<Repeats>;
+#endif
+  std::int32_t largest = 0;
+  // Dense and dilute blocks cost differently: threads take them as they come.
+  Kokkos::parallel_reduce(
+      label, Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>>(0, blocks, Kokkos::ChunkSize(1)),
+      Kernel{search}, Kokkos::Max<std::int32_t>(largest));
+  return largest;
+}
 
 /// Block totals become the places where blocks begin; the last entry, and the return value, is their sum.
 std::int64_t scan_blocks(const DeviceArray<std::int32_t>& block_start, Index blocks) {
@@ -246,7 +162,7 @@ void NeighbourSearch::find_rows(const Particles& particles, NeighbourList& list,
   const Index blocks = (particles.count + row_block - 1) / row_block;
   const Index round = std::min(blocks, blocks_per_round(blocks));
   ensure_size(block_start_, static_cast<std::size_t>(round), "dem::neighbour_list::block_start");
-  block_capacity_ = std::max(block_capacity_, 12 * row_block + 64);
+  block_capacity_ = std::max(block_capacity_, 12 * row_block + 16);
   if (blocks == 0) Kokkos::deep_copy(Kokkos::subview(list.offset, std::pair<Index, Index>(0, 1)), 0);
   std::int64_t total = 0;
   for (Index first = 0; first < blocks; first += round) {
@@ -256,19 +172,12 @@ void NeighbourSearch::find_rows(const Particles& particles, NeighbourList& list,
       ensure_size(staging_, static_cast<std::size_t>(round) * static_cast<std::size_t>(block_capacity_),
                   "dem::neighbour_list::staging");
       std::int32_t largest = 0;
-      // Dense and dilute blocks cost differently: threads take them as they come.
-      const Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>> dynamic(0, present,
-                                                                                   Kokkos::ChunkSize(1));
+      const RowSearch search{grid_, cell_start_, order_,   sorted,       particles,
+                             list,  first,       staging_, block_start_, block_capacity_};
       if (grid_.domain.repeats()) {
-        Kokkos::parallel_reduce("dem::neighbour_list::find_rows_periodic", dynamic,
-                                FindRows<true>{grid_, cell_start_, order_, sorted, particles, list, first,
-                                               staging_, block_start_, block_capacity_},
-                                Kokkos::Max<std::int32_t>(largest));
+        largest = search_rows<true>("dem::neighbour_list::find_rows_periodic", search, present);
       } else {
-        Kokkos::parallel_reduce("dem::neighbour_list::find_rows", dynamic,
-                                FindRows<false>{grid_, cell_start_, order_, sorted, particles, list, first,
-                                                staging_, block_start_, block_capacity_},
-                                Kokkos::Max<std::int32_t>(largest));
+        largest = search_rows<false>("dem::neighbour_list::find_rows", search, present);
       }
       if (largest <= block_capacity_) break;
       block_capacity_ = largest + largest / 4;

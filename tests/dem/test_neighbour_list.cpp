@@ -295,7 +295,7 @@ Effort measure_effort(Real size_ratio, Real solids_fraction, bool periodic, bool
   for (std::size_t p = 0; p < n; ++p) {
     PositionRadius self = particles.position_radius(p);
     self.radius = reach_of(self, list.displacement(p));
-    visit_runs(search.grid(), search.cell_start(), self, [&](std::int32_t begin, std::int32_t end) {
+    visit_runs<true>(search.grid(), search.cell_start(), self, [&](std::int32_t begin, std::int32_t end) {
       effort.candidates += end - begin;
       effort.runs += 1;
     });
