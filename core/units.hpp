@@ -19,6 +19,7 @@ struct Dimension {
 namespace dimension {
 inline constexpr Dimension pure_number{"a pure number", "", "0.5"};
 inline constexpr Dimension length{"a length", "m", "5 mm"};
+inline constexpr Dimension volume{"a volume", "m3", "2 nL"};
 inline constexpr Dimension duration{"a time", "s", "0.1 ms"};
 inline constexpr Dimension mass{"a mass", "kg", "200 g"};
 inline constexpr Dimension velocity{"a velocity", "m/s", "5 cm/s"};
@@ -29,6 +30,8 @@ inline constexpr Dimension density{"a density", "kg/m3", "2.5 g/cm3"};
 inline constexpr Dimension pressure{"a pressure", "Pa", "1 bar"};
 inline constexpr Dimension viscosity{"a dynamic viscosity", "Pa s", "18 uPa s"};
 inline constexpr Dimension flow_rate{"a volume flow rate", "m3/s", "73.5 m3/h"};
+inline constexpr Dimension surface_tension{"a surface tension", "N/m", "72 mN/m"};
+inline constexpr Dimension stiffness{"a stiffness", "N/m", "1 kN/m"};
 inline constexpr Dimension force_per_volume{"a force per volume", "N/m3", "5 N/m3"};
 inline constexpr Dimension temperature{"a temperature", "K", "80 degC"};
 }  // namespace dimension

@@ -35,7 +35,7 @@ struct MeasureKernel {
     const PositionRadius at = place(p);
     const int l = grid.level_of(at.radius);
     ++m.count[l];
-    m.largest_reach[l] = larger(m.largest_reach[l], reach_of(at, displacement(p)));
+    m.largest_reach[l] = larger(m.largest_reach[l], reach_of(at, displacement(p), grid.beyond));
     for (int axis = 0; axis < 3; ++axis) {
       const Real x = at.position()[axis];
       m.min[axis] = x < m.min[axis] ? x : m.min[axis];  // not a number counts as nowhere

@@ -43,9 +43,11 @@ struct alignas(16) Displacement {
   static constexpr std::int64_t most_steps = 20000;
 };
 
-/// How far from its centre a particle may have its surface before the next build [m].
-KOKKOS_INLINE_FUNCTION Real reach_of(const PositionRadius& place, const Displacement& displacement) {
-  return place.radius + static_cast<Real>(displacement.allowance);
+/// How far from its centre a particle may be felt before the next build [m]: its surface, and `beyond` that its share of
+/// the gap at which two still feel each other.
+KOKKOS_INLINE_FUNCTION Real reach_of(const PositionRadius& place, const Displacement& displacement,
+                                     Real beyond = 0) {
+  return place.radius + static_cast<Real>(displacement.allowance) + beyond;
 }
 
 /// Size classes at most: the finest holds all that is smaller than 1/128 of the largest radius.
@@ -54,7 +56,7 @@ inline constexpr int most_levels = 8;
 /// The cells of one size class.
 struct CellLevel {
   Real largest_radius = 0;  ///< particles of this radius and less, down to that of the next level [m]
-  Real largest_reach = 0;   ///< the largest radius + allowance among its particles [m]
+  Real largest_reach = 0;   ///< the largest reach_of among its particles [m]
   Index count = 0;          ///< its particles
   Index first_cell = 0;     ///< number of its first cell
   Index3 cells{0, 0, 0};
@@ -65,7 +67,8 @@ struct CellLevel {
 /// centre; points outside the box belong to the cells at its rim.
 struct CellGrid {
   Domain domain;
-  Box box;  ///< around all centres; the domain's along periodic axes
+  Box box;          ///< around all centres; the domain's along periodic axes
+  Real beyond = 0;  ///< see reach_of [m]
   int levels = 1;
   CellLevel level[most_levels];
 

@@ -8,15 +8,25 @@
 namespace pellicle::dem {
 namespace {
 
-/// Lengths of the packed rows, summed up to offsets; returns how many contacts are held.
-std::int32_t find_offsets(const NeighbourList& list, const DeviceArray<bool>& held,
+/// What a slot remembers, in bits: 1 its springs, 2 a bridge.
+struct HeldState {
+  SpringSlots slots;
+  bool springs, bridges;
+
+  KOKKOS_INLINE_FUNCTION std::int32_t operator()(std::int32_t slot) const {
+    return (springs && slots.held(slot) ? 1 : 0) + (bridges && slots.bridge(slot) ? 2 : 0);
+  }
+};
+
+/// Lengths of the packed rows, summed up to offsets; returns how many slots remember something.
+std::int32_t find_offsets(const NeighbourList& list, const HeldState& state,
                           const DeviceArray<std::int32_t>& offset) {
   const Index count = list.count;
   const auto row = list.offset;
   Kokkos::parallel_for(
       "dem::contact_history::count_held", DeviceRange(0, count), KOKKOS_LAMBDA(const Index p) {
         std::int32_t found = 0;
-        for (std::int32_t slot = row(p); slot < row(p + 1); ++slot) found += held(slot) ? 1 : 0;
+        for (std::int32_t slot = row(p); slot < row(p + 1); ++slot) found += state(slot) != 0 ? 1 : 0;
         offset(p) = found;
       });
   std::int32_t total = 0;
@@ -31,33 +41,39 @@ std::int32_t find_offsets(const NeighbourList& list, const DeviceArray<bool>& he
   return total;
 }
 
-/// Copies held springs into their packed rows.
+/// Copies what is remembered into packed rows.
 struct PackRows {
   int springs;
   NeighbourList list;
-  SpringSlots slots;
-  DeviceArray<std::int32_t> offset, partner, row;
+  HeldState held;
+  DeviceArray<std::int32_t> offset, partner, row, state;
   DeviceArray<Vec3> spring;
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
     row(p) = p;
     std::int32_t entry = offset(p);
     for (std::int32_t slot = list.offset(p); slot < list.offset(p + 1); ++slot) {
-      if (!slots.held(slot)) continue;
+      const std::int32_t bits = held(slot);
+      if (bits == 0) continue;
       partner(entry) = list.partner(slot);
-      for (int s = 0; s < springs; ++s) spring(entry * springs + s) = slots.get(s, slot);
+      if (held.bridges) state(entry) = bits;
+      // A bridge without contact has no springs.
+      for (int s = 0; s < springs; ++s) {
+        spring(entry * springs + s) = (bits & 1) != 0 ? held.slots.get(s, slot) : Vec3{0, 0, 0};
+      }
       ++entry;
     }
   }
 };
 
-/// Finds each slot's springs in the packed row of its particle or, of half lists, in that of its partner.
+/// Finds what each slot remembers in the packed row of its particle or, of half lists, in that of its partner.
 struct UnpackRows {
   int springs;
+  bool bridges;
   Index particles;  ///< that have a row or none; later ones have none
   NeighbourList list;
   SpringSlots slots;
-  DeviceArray<std::int32_t> offset, partner, row;
+  DeviceArray<std::int32_t> offset, partner, row, state;
   DeviceArray<Vec3> spring;
 
   /// The packed entry of a particle's row with this partner, -1 if there is none.
@@ -79,8 +95,10 @@ struct UnpackRows {
         entry = find(q, p);
         sign = -1;
       }
-      slots.held(slot) = entry >= 0;
-      if (entry < 0) continue;
+      const std::int32_t bits = entry < 0 ? 0 : (bridges ? state(entry) : 1);
+      if (springs > 0) slots.held(slot) = (bits & 1) != 0;
+      if (bridges) slots.bridge(slot) = (bits & 2) != 0;
+      if (bits == 0) continue;
       for (int s = 0; s < springs; ++s) slots.set(s, slot, sign * spring(entry * springs + s));
     }
   }
@@ -98,15 +116,17 @@ void invert_order(const DeviceArray<std::int32_t>& order, Index count,
 }  // namespace
 
 void ContactHistory::pack(const NeighbourList& list) {
-  if (springs_ == 0 || place_ != Place::slots) return;
+  if (!remembers() || place_ != Place::slots) return;
   const auto n = static_cast<std::size_t>(list.count);
   ensure_size(offset_, n + 1, "dem::contact_history::offset");
   ensure_size(row_, n, "dem::contact_history::row");
-  const auto total = static_cast<std::size_t>(find_offsets(list, slots_.held, offset_));
+  const HeldState state{slots_, springs_ > 0, bridges_};
+  const auto total = static_cast<std::size_t>(find_offsets(list, state, offset_));
   ensure_size(partner_, total, "dem::contact_history::partner");
   ensure_size(spring_, total * static_cast<std::size_t>(springs_), "dem::contact_history::packed_spring");
+  ensure_size(state_, bridges_ ? total : 0, "dem::contact_history::state");
   Kokkos::parallel_for("dem::contact_history::pack", DeviceRange(0, list.count),
-                       PackRows{springs_, list, slots_, offset_, partner_, row_, spring_});
+                       PackRows{springs_, list, state, offset_, partner_, row_, state_, spring_});
   packed_rows_ = particles_ = list.count;
   place_ = Place::packed;
 }
@@ -136,21 +156,29 @@ void ContactHistory::reorder(const DeviceArray<std::int32_t>& order, Index befor
 }
 
 void ContactHistory::unpack(const NeighbourList& list) {
-  if (springs_ == 0) return;
+  if (!remembers()) return;
   const std::size_t entries = list.partner.extent(0);
   slots_.stride = entries + 8;
-  ensure_size(slots_.held, entries, "dem::contact_history::held");
+  ensure_size(slots_.held, springs_ > 0 ? entries : 0, "dem::contact_history::held");
+  ensure_size(slots_.bridge, bridges_ ? entries : 0, "dem::contact_history::bridge");
   ensure_size(slots_.spring, 3 * slots_.stride * static_cast<std::size_t>(springs_),
               "dem::contact_history::spring");
   const Index known = place_ == Place::packed ? particles_ : 0;
-  Kokkos::parallel_for("dem::contact_history::unpack", DeviceRange(0, list.count),
-                       UnpackRows{springs_, known, list, slots_, offset_, partner_, row_, spring_});
+  Kokkos::parallel_for(
+      "dem::contact_history::unpack", DeviceRange(0, list.count),
+      UnpackRows{springs_, bridges_, known, list, slots_, offset_, partner_, row_, state_, spring_});
   place_ = Place::slots;
 }
 
+std::size_t ContactHistory::bytes() const {
+  return bytes_of(slots_.spring) + bytes_of(slots_.held) + bytes_of(slots_.bridge) + bytes_of(offset_) +
+         bytes_of(partner_) + bytes_of(spring_) + bytes_of(state_) + bytes_of(row_) + bytes_of(row_next_) +
+         bytes_of(new_place_);
+}
+
 void ContactHistory::save(core::CheckpointWriter& file) const {
-  if (springs_ == 0) return;
-  if (place_ == Place::slots) throw std::logic_error("springs are saved before they are packed");
+  if (!remembers()) return;
+  if (place_ == Place::slots) throw std::logic_error("contacts are saved before they are packed");
   const bool any = place_ == Place::packed;
   file.write("dem/history/packed_rows", std::int64_t{any ? packed_rows_ : 0});
   file.write("dem/history/particles", std::int64_t{any ? particles_ : 0});
@@ -160,12 +188,13 @@ void ContactHistory::save(core::CheckpointWriter& file) const {
   file.write("dem/history/offset", host_copy(offset_, packed_rows_ + 1));
   file.write("dem/history/row", host_copy(row_, particles_));
   file.write("dem/history/partner", host_copy(partner_, total));
-  file.write("dem/history/spring", host_copy(spring_, total * springs_));
+  if (springs_ > 0) file.write("dem/history/spring", host_copy(spring_, total * springs_));
+  if (bridges_) file.write("dem/history/state", host_copy(state_, total));
 }
 
 void ContactHistory::load(const core::CheckpointReader& file) {
   clear();
-  if (springs_ == 0) return;
+  if (!remembers()) return;
   packed_rows_ = static_cast<Index>(file.read_int64("dem/history/packed_rows"));
   particles_ = static_cast<Index>(file.read_int64("dem/history/particles"));
   if (packed_rows_ == 0) return;
@@ -179,7 +208,10 @@ void ContactHistory::load(const core::CheckpointReader& file) {
   fill(offset_, file.read_int32s("dem/history/offset"), "dem::contact_history::offset_loaded");
   fill(row_, file.read_int32s("dem/history/row"), "dem::contact_history::row_loaded");
   fill(partner_, file.read_int32s("dem/history/partner"), "dem::contact_history::partner_loaded");
-  fill(spring_, file.read_vec3s("dem/history/spring"), "dem::contact_history::spring_loaded");
+  if (springs_ > 0) {
+    fill(spring_, file.read_vec3s("dem/history/spring"), "dem::contact_history::spring_loaded");
+  }
+  if (bridges_) fill(state_, file.read_int32s("dem/history/state"), "dem::contact_history::state_loaded");
   place_ = Place::packed;
 }
 

@@ -18,6 +18,7 @@ struct BlockReport {
   Real largest_approach_speed = 0;  ///< [m/s]
   Vec3 support_impulse{};           ///< that contacts gave to fixed particles [N s]
   std::int64_t touching = 0;        ///< touching partners, each pair counted at both particles
+  std::int64_t bridges = 0;         ///< liquid bridges, each counted at both particles
 };
 
 /// Extremes and impulses go on, counts start anew.

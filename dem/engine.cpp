@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "dem/cohesion.hpp"
 #include "dem/engine_arrays.hpp"
 
 namespace pellicle::dem {
@@ -13,7 +14,7 @@ namespace pellicle::dem {
 Engine::Engine(const EngineSetup& setup)
     : setup_(setup),
       walls_(setup.walls, setup.domain.box),
-      history_(setup.contacts.springs()),
+      history_(setup.contacts.springs(), setup.contacts.cohesion.has_value()),
       flags_("dem::engine::flags") {
   if (!(setup.time_step > 0)) throw std::invalid_argument("the particle time step must be positive");
   auto& options = setup_.contacts;
@@ -50,7 +51,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   one_particle_material_ = true;
   take_stock(seeds);
   if (largest_radius_ == 0) return;
-  search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
+  search_.emplace_back(setup_.domain, skin(), smallest_radius_, largest_radius_);
   walls_.set_allowances(setup_.skin, setup_.time_step, smallest_radius_, largest_radius_);
   if (seeds.empty()) return;
   const auto place = Kokkos::create_mirror_view(particles_.position_radius);
@@ -82,6 +83,12 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   canonicalise();
 }
 
+SkinOptions Engine::skin() const {
+  SkinOptions skin = setup_.skin;
+  if (setup_.contacts.cohesion) skin.reach = bridge_reach(*setup_.contacts.cohesion, smallest_radius_);
+  return skin;
+}
+
 void Engine::advance(int count, core::Timers& timers) { advance(count, NoFluid{}, timers); }
 
 void Engine::begin_substep(core::Timers& timers) {
@@ -108,6 +115,7 @@ void Engine::begin_substep(core::Timers& timers) {
                            step_.kick,
                            one_particle_material_};
   compute_contact_forces(input, setup_.contacts, result_);
+  if (setup_.contacts.cohesion) add_bridge_forces(input, *setup_.contacts.cohesion, result_);
   walls_.add_contacts(input, setup_.contacts, result_);
   Kokkos::fence("dem::engine::contacts_done");
 }
@@ -161,8 +169,10 @@ ContactReport Engine::collect_report() {
     sum.largest_approach_speed = std::max(sum.largest_approach_speed, r.largest_approach_speed);
     sum.support_impulse += r.support_impulse;
     if (b < blocks) sum.touching_pairs += r.touching;
+    if (b < blocks) sum.bridges += r.bridges;
   }
   sum.touching_pairs /= 2;
+  sum.bridges /= 2;
   Kokkos::deep_copy(result_.report, BlockReport{});
   for (const WallReport& r : walls_.collect_reports()) {
     sum.largest_overlap = std::max(sum.largest_overlap, r.largest_overlap);
@@ -193,6 +203,7 @@ std::size_t Engine::bytes() const {
   total += bytes_of(list_.offset) + bytes_of(list_.partner) + bytes_of(list_.displacement);
   total += walls_.bytes();
   for (const NeighbourSearch& search : search_) total += search.bytes();
+  total += history_.bytes();
   return total;
 }
 

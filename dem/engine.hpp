@@ -65,6 +65,7 @@ struct ContactReport {
   Vec3 support_impulse{};           ///< contacts to fixed particles [N s]
   std::int64_t touching_pairs = 0;
   std::int64_t touching_walls = 0;
+  std::int64_t bridges = 0;        ///< between particles
   std::int64_t crowded_walls = 0;  ///< times that a particle overlapped more surfaces than are compared
   std::vector<WallLoad> walls;     ///< one for each wall of the set-up
 };
@@ -160,6 +161,7 @@ class Engine {
   Real wall_time() const;
   void end_substep();
   void build_lists();
+  SkinOptions skin() const;
   void sort_memory();
   void reorder(const DeviceArray<std::int32_t>& order, Index count);
   void remove_left();

@@ -66,7 +66,7 @@ void Engine::load(core::CheckpointReader& file) {
   moving_volume_ = file.read_double("dem/moving_volume");
   one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
   if (largest_radius_ > 0) {
-    search_.emplace_back(setup_.domain, setup_.skin, smallest_radius_, largest_radius_);
+    search_.emplace_back(setup_.domain, skin(), smallest_radius_, largest_radius_);
     walls_.set_allowances(setup_.skin, setup_.time_step, smallest_radius_, largest_radius_);
   }
   if (n == 0) return;

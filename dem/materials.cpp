@@ -36,6 +36,10 @@ Real effective_shear_modulus(const Material& a, const Material& b) {
   return compliance > 0 ? 1 / compliance : 0;
 }
 
+Real sphere_mass(const Material& material, Real radius) {
+  return material.density * 4.0 / 3.0 * pi * radius * radius * radius;
+}
+
 }  // namespace
 
 Real compute_damping_ratio(Real restitution, bool clip) {
@@ -116,6 +120,50 @@ void require_stiffness(const std::vector<Material>& materials, const std::vector
   }
 }
 
+Real compute_linear_stiffness(const Material& a, const RadiusRange& radii_a, const Material& b,
+                              const RadiusRange& radii_b, Real largest_overlap, Real speed) {
+  if (!radii_a.any()) {
+    return radii_b.any() ? compute_linear_stiffness(b, radii_b, a, radii_a, largest_overlap, speed) : 0;
+  }
+  // The worst pair may lie inside the ranges (0.79 : 1 for equal densities), where m*/R² is flat: a few radii will do.
+  constexpr int steps = 20;
+  const auto radius = [](const RadiusRange& range, int i) {
+    return range.smallest + (range.largest - range.smallest) * i / steps;
+  };
+  Real stiffness = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const Real ra = radius(radii_a, i);
+    const Real ma = sphere_mass(a, ra);
+    for (int j = 0; j <= (radii_b.any() ? steps : 0); ++j) {
+      const Real rb = radius(radii_b, j);
+      const Real mb = sphere_mass(b, rb);
+      const Real reduced_mass = radii_b.any() ? ma * mb / (ma + mb) : ma;
+      const Real overlap = largest_overlap * (radii_b.any() ? std::min(ra, rb) : ra);
+      stiffness = std::max(stiffness, reduced_mass * speed * speed / (overlap * overlap));
+    }
+  }
+  return stiffness;
+}
+
+TimeStepBound compute_linear_time_step_bound(const std::vector<Material>& materials,
+                                             const std::vector<PairProperties>& pairs,
+                                             const std::vector<Real>& smallest_radius) {
+  constexpr Real infinity = std::numeric_limits<Real>::infinity();
+  TimeStepBound result{infinity, infinity, infinity};
+  const auto inverse_mass = [&](int material) {
+    const auto m = static_cast<std::size_t>(material);
+    const Real radius = m < smallest_radius.size() ? smallest_radius[m] : 0;
+    return radius > 0 && radius < infinity ? 1 / sphere_mass(materials[m], radius) : 0;
+  };
+  for (const PairProperties& pair : pairs) {
+    const Real inverse = inverse_mass(pair.material_a) + inverse_mass(pair.material_b);
+    if (inverse == 0) continue;
+    result.contact_time = std::min(result.contact_time, pi / std::sqrt(pair.normal_stiffness * inverse));
+  }
+  result.bound = result.contact_time / 20;
+  return result;
+}
+
 TimeStepBound compute_time_step_bound(const std::vector<Material>& materials,
                                       const std::vector<Real>& smallest_radius, Real impact_speed) {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
@@ -131,7 +179,7 @@ TimeStepBound compute_time_step_bound(const std::vector<Material>& materials,
     result.rayleigh_time =
         std::min(result.rayleigh_time,
                  pi * radius * std::sqrt(materials[a].density / shear_modulus) / (0.1631 * nu + 0.8766));
-    const Real mass = materials[a].density * 4.0 / 3.0 * pi * radius * radius * radius;
+    const Real mass = sphere_mass(materials[a], radius);
     for (std::size_t b = 0; b < materials.size(); ++b) {
       const Real modulus = effective_youngs_modulus(materials[a], materials[b]);
       // A wall of material b: R* = R, m* = m. Particles of b: the reduced ones.
@@ -139,7 +187,7 @@ TimeStepBound compute_time_step_bound(const std::vector<Material>& materials,
       Real reduced_mass = mass;
       if (has_particles(b)) {
         const Real other = smallest_radius[b];
-        const Real other_mass = materials[b].density * 4.0 / 3.0 * pi * other * other * other;
+        const Real other_mass = sphere_mass(materials[b], other);
         reduced_radius = radius * other / (radius + other);
         reduced_mass = mass * other_mass / (mass + other_mass);
       }

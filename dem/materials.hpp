@@ -46,15 +46,33 @@ void require_pairs(const std::vector<Material>& materials, const std::vector<Pai
 /// Throws std::invalid_argument naming both materials of a pair without the stiffness that the linear law needs.
 void require_stiffness(const std::vector<Material>& materials, const std::vector<PairProperties>& pairs);
 
+/// Radii of the particles of a material [m]; a material of walls alone has none.
+struct RadiusRange {
+  Real smallest = 0, largest = 0;
+  bool any() const { return largest > 0; }
+};
+
+/// Stiffness k [N/m] of the linear law with which no impact at `speed` [m/s] between bodies of two materials overlaps by
+/// more than `largest_overlap` of the smaller radius: m* v² = k δ² for the worst pair of radii. Without particles in `b`
+/// it is that of walls; without any in either, 0.
+Real compute_linear_stiffness(const Material& a, const RadiusRange& radii_a, const Material& b,
+                              const RadiusRange& radii_b, Real largest_overlap, Real speed);
+
 /// Largest stable particle time step [s]: min(0.2 T_Rayleigh, t_c/20) over all materials and pairs (PHYSICS.md 3).
 struct TimeStepBound {
   Real bound = 0;          ///< [s]
-  Real rayleigh_time = 0;  ///< shortest, [s]
+  Real rayleigh_time = 0;  ///< shortest, [s]; infinite for the linear law
   Real contact_time = 0;   ///< shortest, at the impact speed, [s]
 };
 
 /// `smallest_radius` [m] per material (infinite or zero where no particle has it); impact speed [m/s].
 TimeStepBound compute_time_step_bound(const std::vector<Material>& materials,
                                       const std::vector<Real>& smallest_radius, Real impact_speed);
+
+/// The bound for linear springs, t_c/20 with t_c = π √(m*/k), the half period of an undamped contact; the smallest over
+/// pairs, each with its stiffness. `smallest_radius` as above.
+TimeStepBound compute_linear_time_step_bound(const std::vector<Material>& materials,
+                                             const std::vector<PairProperties>& pairs,
+                                             const std::vector<Real>& smallest_radius);
 
 }  // namespace pellicle::dem

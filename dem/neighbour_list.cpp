@@ -34,7 +34,7 @@ void set_allowances(const Particles& particles, Real reach_time, Real smallest, 
 }
 
 void gather_sorted(const Particles& particles, const DeviceArray<std::int32_t>& order,
-                   const DeviceArray<Displacement>& displacement, const SortedPlaces& sorted) {
+                   const DeviceArray<Displacement>& displacement, Real beyond, const SortedPlaces& sorted) {
   const auto place = particles.position_radius;
   Kokkos::parallel_for(
       "dem::neighbour_list::gather_sorted", DeviceRange(0, particles.count), KOKKOS_LAMBDA(const Index slot) {
@@ -43,7 +43,7 @@ void gather_sorted(const Particles& particles, const DeviceArray<std::int32_t>& 
         sorted.x()[slot] = at.x;
         sorted.y()[slot] = at.y;
         sorted.z()[slot] = at.z;
-        sorted.reach()[slot] = reach_of(at, displacement(p));
+        sorted.reach()[slot] = reach_of(at, displacement(p), beyond);
       });
 }
 
@@ -117,7 +117,8 @@ NeighbourSearch::NeighbourSearch(const Domain& domain, const SkinOptions& skin, 
                                  Real largest_radius)
     : skin_(skin), smallest_radius_(smallest_radius), largest_radius_(largest_radius) {
   grid_.domain = domain;
-  const Real reach = 2 * largest_radius_ * (1 + skin_.largest_fraction);
+  grid_.beyond = skin_.reach;
+  const Real reach = 2 * (largest_radius_ * (1 + skin_.largest_fraction) + skin_.reach);
   for (int axis = 0; axis < 3; ++axis) {
     if (domain.periodic[axis] != 0 && domain.length()[axis] < 2 * reach) {
       throw std::invalid_argument("a periodic domain must be at least " + std::to_string(2 * reach) +
@@ -151,7 +152,7 @@ void NeighbourSearch::build(const Particles& particles, Real time_step, Neighbou
   find_order(particles, time_step, list);
   list.count = particles.count;
   ensure_size(list.offset, static_cast<std::size_t>(particles.count) + 1, "dem::neighbour_list::offset");
-  gather_sorted(particles, order_, list.displacement,
+  gather_sorted(particles, order_, list.displacement, grid_.beyond,
                 {scratch, sorted_stride(static_cast<std::size_t>(particles.count))});
   find_rows(particles, list, scratch);
 }

@@ -16,6 +16,7 @@ struct SkinOptions {
   Real steps = 26;                ///< steps that a particle's own speed should last
   Real smallest_fraction = 0.10;  ///< of the smallest radius
   Real largest_fraction = 0.40;   ///< of the largest radius
+  Real reach = 0;                 ///< share of a particle in the gap at which two still feel each other [m]
 };
 
 /// Whether lists have pairs once where they can: on a CPU that halves the work; a GPU would need atomics.

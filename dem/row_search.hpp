@@ -66,7 +66,7 @@ struct FindRows {
     const Index end = Kokkos::min(begin + row_block, in.particles.count);
     for (Index p = begin; p < end; ++p) {
       PositionRadius self = in.particles.position_radius(p);
-      self.radius = reach_of(self, in.list.displacement(p));
+      self.radius = reach_of(self, in.list.displacement(p), in.grid.beyond);
       const std::int32_t row = n;
       const Index first = in.first_with(p);
       visit_runs<Repeats>(in.grid, in.cell_start, self, [&](std::int32_t from, std::int32_t to) {
@@ -118,7 +118,7 @@ struct FindRowsInLanes {
     const Index end = Kokkos::min(begin + row_block, in.particles.count);
     for (Index p = begin; p < end; ++p) {
       PositionRadius self = in.particles.position_radius(p);
-      self.radius = reach_of(self, in.list.displacement(p));
+      self.radius = reach_of(self, in.list.displacement(p), in.grid.beyond);
       const std::int32_t row = n;
       const Index first = in.first_with(p);
       visit_runs<Repeats>(in.grid, in.cell_start, self, [&](std::int32_t from, std::int32_t to) {

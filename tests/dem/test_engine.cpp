@@ -103,6 +103,8 @@ TEST(Engine, ConservesThemWithLawsThatRemember) {
   setup.contacts.normal = Linear{};
   for (PairProperties& pair : setup.pairs) pair.normal_stiffness = 2000;
   expect_momentum_and_angular_momentum_constant(setup);
+  setup.contacts.cohesion = Willett{1e-11, 0.072, 0.3};
+  expect_momentum_and_angular_momentum_constant(setup);
 }
 
 TEST(Engine, BooksEveryImpulse) {
@@ -324,7 +326,10 @@ void expect_to_continue_bit_for_bit(bool remembers) {
   tests::add_box_walls(setup);
   setup.walls.push_back(PlaneWall{"partition", {0.02, 0, 0}, {-1, 0, 0}, {}, 1});
   setup.walls.push_back(PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1});
-  if (remembers) tests::let_contacts_remember(setup);
+  if (remembers) {
+    tests::let_contacts_remember(setup);
+    setup.contacts.cohesion = Willett{1e-11, 0.072, 0.3};
+  }
   std::vector<Real> radii(150);
   for (std::size_t p = 0; p < 150; ++p) radii[p] = p % 4 == 0 ? 0.0015 : 0.0009;
   const auto centres = tests::scatter({{0.002, 0.0015, 0.002}, {0.018, 0.0135, 0.018}}, radii, 0, 51);

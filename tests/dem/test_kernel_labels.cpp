@@ -51,7 +51,10 @@ class Hooks {
 /// A shallow bed that is stirred by its own speed, with rolling resistance; two materials use the general loop.
 EngineSetup bed_setup(bool two_materials, bool periodic) {
   auto setup = tests::glass_setup({0.02, 0.02, 0.02}, 1e-5, 0.9, 0.3, 0.01);
-  if (two_materials) tests::let_contacts_remember(setup);
+  if (two_materials) {
+    tests::let_contacts_remember(setup);
+    setup.contacts.cohesion = Willett{1e-12, 0.072, 0};
+  }
   if (two_materials) {
     setup.materials.push_back({"heavy", 8000, 1e7, 0.3, false});
     setup.pairs.insert(setup.pairs.end(),

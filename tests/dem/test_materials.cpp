@@ -157,5 +157,46 @@ TEST(TimeStepBound, AgreesWithHandCalculation) {
   expect_ratio(slow.bound, 0.2 * 0.000127677862644288, round_off);
 }
 
+TEST(LinearStiffness, BoundsTheOverlap) {
+  const Material glass{"glass", 2500, 1e7, 0.22, false};
+  const Material wall{"wall", 0, 0, 0, true};
+  const RadiusRange bead{0.005, 0.005};
+  const Real mass = 2500 * 4.0 / 3.0 * M_PI * 0.005 * 0.005 * 0.005;
+  // Without damping m* v²/2 becomes k δ²/2; δ = 1 % of R, m* = m/2 or, at a wall, m.
+  const Real pair = compute_linear_stiffness(glass, bead, glass, bead, 0.01, 2);
+  expect_ratio(pair, 0.5 * mass * 4 / (5e-5 * 5e-5), round_off);
+  expect_ratio(compute_linear_stiffness(glass, bead, wall, {}, 0.01, 2), 2 * pair, round_off);
+  expect_ratio(compute_linear_stiffness(wall, {}, glass, bead, 0.01, 2), 2 * pair, round_off);
+  EXPECT_EQ(compute_linear_stiffness(wall, {}, wall, {}, 0.01, 2), 0);
+  // Sizes from 1 to 3, and another density: no pair of them overlaps more, and one nearly as much.
+  const Material heavy{"heavy", 8000, 1e7, 0.22, false};
+  const Real stiffness = compute_linear_stiffness(glass, {0.001, 0.003}, heavy, {0.002, 0.004}, 0.01, 2);
+  Real largest = 0;
+  for (Real ra = 0.001; ra <= 0.003; ra += 7e-6) {
+    for (Real rb = 0.002; rb <= 0.004; rb += 7e-6) {
+      const Real inverse = (1 / (2500 * ra * ra * ra) + 1 / (8000 * rb * rb * rb)) * 3 / (4 * M_PI);
+      largest = std::max(largest, 2 / std::sqrt(inverse * stiffness) / std::min(ra, rb));
+    }
+  }
+  EXPECT_NEAR(largest, 0.01, 5e-5);  // 20 radii of each range against 290
+}
+
+TEST(LinearStiffness, BoundsTheTimeStep) {
+  // t_c = π √(m*/k) = π δ/v for the stiffness above; the wall contact has the same, twice the mass and twice k. A pair of
+  // materials without particles does not count.
+  const std::vector<Material> both{{"glass", 2500, 1e7, 0.22, false}, {"wall", 0, 0, 0, true}};
+  const RadiusRange bead{0.005, 0.005};
+  std::vector<PairProperties> pairs{{0, 0, 0.9, 0, 0}, {0, 1, 0.9, 0, 0}, {1, 1, 0.9, 0, 0, 1e30}};
+  pairs[0].normal_stiffness = compute_linear_stiffness(both[0], bead, both[0], bead, 0.01, 2);
+  pairs[1].normal_stiffness = compute_linear_stiffness(both[0], bead, both[1], {}, 0.01, 2);
+  const auto bound = compute_linear_time_step_bound(both, pairs, {0.005, 0});
+  expect_ratio(bound.contact_time, M_PI * 5e-5 / 2, round_off);
+  expect_ratio(bound.bound, M_PI * 5e-5 / 2 / 20, round_off);
+  EXPECT_TRUE(std::isinf(bound.rayleigh_time));
+  pairs[1].normal_stiffness *= 4;
+  expect_ratio(compute_linear_time_step_bound(both, pairs, {0.005, 0}).contact_time, M_PI * 2.5e-5 / 2,
+               round_off);
+}
+
 }  // namespace
 }  // namespace pellicle::dem

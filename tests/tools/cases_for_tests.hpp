@@ -11,7 +11,7 @@ time: {end: "2 s", gas_step: "0.1 ms", particle_step: "5 us", impact_speed: "3 m
        allow_large_step: true}
 materials:
   glass: {density: "2.5 g/cm3", youngs_modulus: "10 MPa", poisson_ratio: 0.22}
-  steel: {density: 7800, youngs_modulus: 2e9, poisson_ratio: 0.3}
+  steel: {density: 7800, youngs_modulus: 2e9, poisson_ratio: 0.3, true_youngs_modulus: "2e11 Pa"}
 walls:
   - {name: sides, box: domain, open: [top, right], material: acrylic, velocity: [0, 0.5, 0]}
   - {name: floor, plane: {point: [0, 0, "1 mm"], normal: [0, 0, 2]}, material: steel, velocity: [0.1, 0, 0]}
@@ -82,7 +82,11 @@ gas:
 inline constexpr const char* powders_case = R"(domain: {min: [0, 0, 0], max: ["40 mm", "40 mm", "100 mm"]}
 time: {end: 0.1, particle_step: 1e-6}
 materials: {glass: {density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.22}}
-contacts: {pairs: [{between: [glass, glass], restitution: 0.9, sliding_friction: 0.3}]}
+contacts:
+  model: {normal: linear, tangential: mindlin, rolling: epsd2}
+  linear: {largest_overlap: 0.05, speed: "50 cm/s"}
+  cohesion: {model: willett, bridge_volume: "1e-3 uL", surface_tension: "72 mN/m", contact_angle: "20 deg"}
+  pairs: [{between: [glass, glass], restitution: 0.9, sliding_friction: 0.3, normal_stiffness: "0.5 kN/m"}]
 particles:
   - {material: glass, total_mass: "2 g", diameter: {uniform: {min: "1 mm", max: "2 mm"}},
      fill: {box: {min: [0, 0, 0], max: ["40 mm", "40 mm", "20 mm"]}}}

@@ -255,6 +255,38 @@ TEST(CaseErrors, Steps) {
   EXPECT_EQ(spec.warnings[0].substr(0, 53), "--set: time.particle_step: 0.001 s is over the bound ");
 }
 
+// The same beads: m* = 6.545e-4 kg, δ = 1 % of 5 mm at 1 m/s: k = m* v²/δ² = 261.8 kN/m, t_c = π √(m*/k) = 1.57e-4 s.
+TEST(CaseFile, LinearStiffnessFollowsFromTheOverlap) {
+  const std::vector<std::string> linear{"contacts.model.normal=linear", "time.particle_step=5e-6"};
+  const CaseSpec spec = parse_case(two_particles_case, "c.yaml", linear);
+  EXPECT_EQ(spec.contacts.linear->largest_overlap, 0.01);
+  EXPECT_EQ(spec.contacts.linear->speed, 1);
+  EXPECT_NEAR(make_pairs(spec)[0].normal_stiffness, 261799.39, 0.01);
+  EXPECT_NEAR(particle_step_bound(spec).bound, 7.853982e-6, 1e-12);
+  auto own = linear;
+  own.emplace_back("contacts.pairs.0.normal_stiffness=1e5");
+  EXPECT_EQ(make_pairs(parse_case(two_particles_case, "c.yaml", own))[0].normal_stiffness, 1e5);
+  EXPECT_EQ(errors(two_particles_case, {"contacts.model.normal=linear"}),
+            "c.yaml:2: time.particle_step: 1e-05 s is over the bound of 7.85e-06 s (a twentieth of the "
+            "contact time "
+            "0.000157 s of the linear springs); at most the bound, or time.allow_large_step: true");
+  EXPECT_EQ(pair_errors("contacts.linear={}"),
+            "--set: contacts.linear: the normal law is hertz; only with contacts.model.normal: linear");
+  EXPECT_EQ(
+      pair_errors("contacts.pairs.0.normal_stiffness=10"),
+      "--set: contacts.pairs.0.normal_stiffness: the normal law is hertz; only with contacts.model.normal: "
+      "linear");
+}
+
+TEST(CaseErrors, Cohesion) {
+  EXPECT_EQ(pair_errors("contacts.cohesion={bridge_volume: 20 uL, surface_tension: 0.07}"),
+            "--set: contacts.cohesion.bridge_volume: 2e-08 m3 is too much for the smallest particles, which "
+            "it would "
+            "drown; at most 1.25e-08 m3, a tenth of R^3");
+  EXPECT_EQ(pair_errors("contacts.cohesion={bridge_volume: 1 uL}"),
+            "--set: contacts.cohesion.surface_tension: missing; a surface tension greater than 0");
+}
+
 TEST(CaseErrors, MaterialsAndPairs) {
   EXPECT_EQ(bed_errors("particles.0.material=glas"),
             "--set: particles.0.material: no material \"glas\"; glass, steel");

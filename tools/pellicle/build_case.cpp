@@ -33,22 +33,8 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
     // Without box walls particles leave wherever no other wall holds them.
     setup.domain.open_min[axis] = setup.domain.open_max[axis] = boxed || periodic ? 0 : 1;
   }
-  for (const MaterialSpec& m : spec.materials) {
-    setup.materials.push_back({m.name, m.density, m.youngs_modulus, m.poisson_ratio, m.rigid});
-  }
-  for (const PairSpec& p : spec.contacts.pairs) {
-    setup.pairs.push_back(
-        {p.material_a, p.material_b, p.restitution, p.sliding_friction, p.rolling_friction});
-  }
-  // The table of pairs has no gaps: pairs that cannot meet, and that the case need not give, get any values.
-  for (int a = 0; a < static_cast<int>(spec.materials.size()); ++a) {
-    for (int b = a; b < static_cast<int>(spec.materials.size()); ++b) {
-      const bool given = std::any_of(
-          spec.contacts.pairs.begin(), spec.contacts.pairs.end(),
-          [&](const PairSpec& p) { return std::minmax(p.material_a, p.material_b) == std::minmax(a, b); });
-      if (!given && !can_meet(spec, a, b)) setup.pairs.push_back({a, b, 1, 0, 0});
-    }
-  }
+  setup.materials = make_materials(spec);
+  setup.pairs = make_pairs(spec);
   choose_model(spec.contacts.normal, spec.where("contacts.model.normal"), setup.contacts.normal);
   choose_model(spec.contacts.tangential, spec.where("contacts.model.tangential"), setup.contacts.tangential);
   choose_model(spec.contacts.rolling, spec.where("contacts.model.rolling"), setup.contacts.rolling);
@@ -57,6 +43,7 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
                   [](const PairSpec& p) { return p.rolling_friction == 0; })) {
     setup.contacts.rolling = dem::NoRolling{};
   }
+  if (spec.contacts.cohesion) setup.contacts.cohesion = spec.contacts.cohesion->willett;
   setup.contacts.clip = spec.contacts.clip;
   setup.contacts.overlap_limit = spec.contacts.overlap_limit;
   for (const WallSpec& wall : spec.walls) {

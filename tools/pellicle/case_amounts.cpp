@@ -1,10 +1,13 @@
 // How many particles a case has, how large they are, and what step they allow.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "core/random.hpp"
+#include "dem/cohesion.hpp"
 #include "dem/fill.hpp"
 #include "dem/materials.hpp"
 #include "dem/neighbour_list.hpp"
@@ -102,7 +105,10 @@ DiameterRange diameter_range(const CaseSpec& spec) {
 }
 
 Real least_periodic_width(const CaseSpec& spec) {
-  return 2 * diameter_range(spec).largest * (1 + dem::SkinOptions{}.largest_fraction);
+  const DiameterRange diameters = diameter_range(spec);
+  const Real bridge =
+      spec.contacts.cohesion ? dem::bridge_reach(spec.contacts.cohesion->willett, diameters.smallest / 2) : 0;
+  return 2 * diameters.largest * (1 + dem::SkinOptions{}.largest_fraction) + 4 * bridge;
 }
 
 bool can_meet(const CaseSpec& spec, int material_a, int material_b) {
@@ -125,18 +131,70 @@ bool can_meet(const CaseSpec& spec, int material_a, int material_b) {
          (of_particles(material_b) && of_walls(material_a));
 }
 
-StepBound particle_step_bound(const CaseSpec& spec) {
+std::vector<dem::Material> make_materials(const CaseSpec& spec, bool true_moduli) {
   std::vector<dem::Material> materials;
   for (const auto& m : spec.materials) {
-    materials.push_back({m.name, m.density, m.youngs_modulus, m.poisson_ratio, m.rigid});
+    const Real modulus = true_moduli ? m.true_youngs_modulus.value_or(m.youngs_modulus) : m.youngs_modulus;
+    materials.push_back({m.name, m.density, modulus, m.poisson_ratio, m.rigid});
   }
+  return materials;
+}
+
+std::vector<dem::PairProperties> make_pairs(const CaseSpec& spec) {
+  const auto materials = make_materials(spec);
+  std::vector<dem::RadiusRange> radii(materials.size());
+  for (const auto& population : spec.particles) {
+    dem::RadiusRange& range = radii[static_cast<std::size_t>(population.material)];
+    const DiameterRange own = diameter_range(population);
+    range.smallest = range.any() ? std::min(range.smallest, own.smallest / 2) : own.smallest / 2;
+    range.largest = std::max(range.largest, own.largest / 2);
+  }
+  std::vector<dem::PairProperties> pairs;
+  for (const PairSpec& p : spec.contacts.pairs) {
+    Real stiffness = p.normal_stiffness.value_or(0);
+    if (stiffness == 0 && spec.contacts.linear) {
+      const auto a = static_cast<std::size_t>(p.material_a);
+      const auto b = static_cast<std::size_t>(p.material_b);
+      stiffness =
+          dem::compute_linear_stiffness(materials[a], radii[a], materials[b], radii[b],
+                                        spec.contacts.linear->largest_overlap, spec.contacts.linear->speed);
+      if (stiffness == 0) stiffness = 1;  // neither has particles
+    }
+    pairs.push_back(
+        {p.material_a, p.material_b, p.restitution, p.sliding_friction, p.rolling_friction, stiffness});
+  }
+  const int count = static_cast<int>(materials.size());
+  for (int a = 0; a < count; ++a) {
+    for (int b = a; b < count; ++b) {
+      const bool given = std::any_of(
+          spec.contacts.pairs.begin(), spec.contacts.pairs.end(),
+          [&](const PairSpec& p) { return std::minmax(p.material_a, p.material_b) == std::minmax(a, b); });
+      if (!given && !can_meet(spec, a, b)) pairs.push_back({a, b, 1, 0, 0, 1});
+    }
+  }
+  return pairs;
+}
+
+dem::TimeStepBound particle_step_bound(const CaseSpec& spec, bool true_moduli) {
+  const auto materials = make_materials(spec, true_moduli);
   std::vector<Real> smallest_radius(materials.size(), std::numeric_limits<Real>::infinity());
   for (const auto& population : spec.particles) {
     Real& smallest = smallest_radius[static_cast<std::size_t>(population.material)];
     smallest = std::min(smallest, diameter_range(population).smallest / 2);
   }
-  const auto bound = dem::compute_time_step_bound(materials, smallest_radius, spec.time.impact_speed);
-  return {bound.bound, bound.rayleigh_time, bound.contact_time};
+  if (spec.contacts.linear) {
+    return dem::compute_linear_time_step_bound(materials, make_pairs(spec), smallest_radius);
+  }
+  return dem::compute_time_step_bound(materials, smallest_radius, spec.time.impact_speed);
+}
+
+std::string describe_bound(const CaseSpec& spec, const dem::TimeStepBound& bound) {
+  if (spec.contacts.linear) {
+    return fmt::format("a twentieth of the contact time {:.3g} s of the linear springs", bound.contact_time);
+  }
+  return fmt::format(
+      "a fifth of the Rayleigh time {:.3g} s, a twentieth of the contact time {:.3g} s at {:g} m/s",
+      bound.rayleigh_time, bound.contact_time, spec.time.impact_speed);
 }
 
 }  // namespace pellicle::tools

@@ -123,13 +123,10 @@ class Checker {
                             time.particle_step, time.gas_step));
     }
     if (spec_.particles.empty()) return;
-    const StepBound bound = particle_step_bound(spec_);
+    const dem::TimeStepBound bound = particle_step_bound(spec_);
     if (time.particle_step <= bound.bound) return;
-    const std::string what = fmt::format(
-        "{:g} s is over the bound of {:.3g} s (a fifth of the Rayleigh time {:.3g} s, a twentieth of the "
-        "contact time "
-        "{:.3g} s at {:g} m/s)",
-        time.particle_step, bound.bound, bound.rayleigh_time, bound.contact_time, time.impact_speed);
+    const std::string what = fmt::format("{:g} s is over the bound of {:.3g} s ({})", time.particle_step,
+                                         bound.bound, describe_bound(spec_, bound));
     if (time.allow_large_step) {
       warn("time.particle_step", what + ": contacts may blow up");
     } else {
@@ -139,6 +136,8 @@ class Checker {
 
   void check_particles() {
     check_pairs();
+    check_stiffness();
+    check_cohesion();
     for (const auto& population : spec_.particles) {
       if (population.fill) check_fill(population);
       for (std::size_t i = 0; i < population.list.size(); ++i) check_listed(population, i);
@@ -168,6 +167,35 @@ class Checker {
                                 material(a), material(b), material(a), material(b)));
         }
       }
+    }
+  }
+  void check_stiffness() {
+    constexpr std::string_view name = dem::Linear::info.name;
+    if (spec_.contacts.normal == name) return;
+    if (spec_.contacts.linear) {
+      wrong_key("contacts.linear", fmt::format("the normal law is {}; only with contacts.model.normal: {}",
+                                               spec_.contacts.normal, name));
+    }
+    for (const auto& pair : spec_.contacts.pairs) {
+      if (!pair.normal_stiffness) continue;
+      wrong(pair.where, "normal_stiffness",
+            fmt::format("the normal law is {}; only with contacts.model.normal: {}", spec_.contacts.normal,
+                        name));
+    }
+  }
+  /// The fit of the bridge's force ends at a tenth of R_w³ (Willett et al. 2000).
+  void check_cohesion() {
+    if (!spec_.contacts.cohesion) return;
+    const Real radius = diameter_range(spec_).smallest / 2;
+    const Real largest = 0.1 * radius * radius * radius;
+    const Real volume = spec_.contacts.cohesion->willett.bridge_volume;
+    if (volume > largest) {
+      wrong_key(
+          "contacts.cohesion.bridge_volume",
+          fmt::format(
+              "{:.3g} m3 is too much for the smallest particles, which it would drown; at most {:.3g} m3, "
+              "a tenth of R^3",
+              volume, largest));
     }
   }
   const std::string& material(int index) const {

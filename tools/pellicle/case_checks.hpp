@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/key_reader.hpp"
+#include "dem/materials.hpp"
 #include "tools/pellicle/case_spec.hpp"
 
 namespace pellicle::tools {
@@ -42,10 +43,17 @@ DiameterRange diameter_range(const CaseSpec& spec);
 /// Smallest width of a periodic domain [m]: no particle may meet two images of another one.
 Real least_periodic_width(const CaseSpec& spec);
 
+/// The materials as the engine knows them, with their true moduli where given, or with those that contacts have.
+std::vector<dem::Material> make_materials(const CaseSpec& spec, bool true_moduli = false);
+
+/// Properties of all pairs of materials: those given, with the stiffness that the linear law comes to, and arbitrary ones
+/// for pairs that cannot meet.
+std::vector<dem::PairProperties> make_pairs(const CaseSpec& spec);
+
 /// Largest stable particle step of the case [s], see dem::compute_time_step_bound; infinite if nothing can touch.
-struct StepBound {
-  Real bound = 0, rayleigh_time = 0, contact_time = 0;  ///< [s]
-};
-StepBound particle_step_bound(const CaseSpec& spec);
+dem::TimeStepBound particle_step_bound(const CaseSpec& spec, bool true_moduli = false);
+
+/// `a fifth of the Rayleigh time 0.1 s, …`: where a bound comes from.
+std::string describe_bound(const CaseSpec& spec, const dem::TimeStepBound& bound);
 
 }  // namespace pellicle::tools

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dem/contact_laws.hpp"
 #include "tools/pellicle/case_checks.hpp"
 #include "tools/pellicle/case_file.hpp"
 
@@ -78,6 +79,10 @@ void count_fills(CaseSpec& spec, core::InputProblems& problems) {
 void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
   if (spec.title.empty()) spec.title = case_name(spec.file);
   fill_in_time(spec, problems);
+  if (spec.contacts.normal == dem::Linear::info.name) {
+    if (!spec.contacts.linear) spec.contacts.linear.emplace();
+    if (spec.contacts.linear->speed == 0) spec.contacts.linear->speed = spec.time.impact_speed;
+  }
   count_fills(spec, problems);
   if (spec.gas && spec.coupling.transfer_grid.cells.x == 0) spec.coupling.transfer_grid = spec.gas->grid;
   for (auto& line : spec.output.lines) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tools/pellicle/case_keys.hpp"
 #include "tools/pellicle/model_families.hpp"
@@ -23,6 +24,8 @@ void describe_material(Keys& keys, MaterialSpec& material) {
   keys.real({"youngs_modulus", "a smaller one than the real allows a larger particle step; overlaps grow",
              Need::required},
             {dimension::pressure, range::positive}, material.youngs_modulus);
+  keys.real({"true_youngs_modulus", "of the real solid: the particle step that it would need is reported"},
+            {dimension::pressure, range::positive}, material.true_youngs_modulus);
   keys.real({"poisson_ratio", "of the solid", Need::required},
             {dimension::pure_number, {.min = 0, .max = 0.5}}, material.poisson_ratio);
 }
@@ -53,6 +56,30 @@ void describe_pair(Keys& keys, PairSpec& pair, CaseSpec& spec) {
             {dimension::pure_number, range::non_negative}, pair.sliding_friction);
   keys.real({"rolling_friction", "rolling torque over normal force and reduced radius R*"},
             {dimension::pure_number, range::non_negative}, pair.rolling_friction);
+  keys.real({"normal_stiffness", "of the linear law", Need::has_default, "by contacts.linear"},
+            {dimension::stiffness, range::positive}, pair.normal_stiffness);
+}
+
+void describe_cohesion(Keys& keys, CohesionSpec& cohesion) {
+  dem::Willett& law = cohesion.willett;
+  keys.choice({"model", "what the attraction is"}, cohesion_models, cohesion.model);
+  keys.real({"bridge_volume", "liquid in one bridge", Need::required}, {dimension::volume, range::positive},
+            law.bridge_volume);
+  keys.real({"surface_tension", "of the liquid", Need::required},
+            {dimension::surface_tension, range::positive}, law.surface_tension);
+  keys.real({"contact_angle", "between liquid and solid"},
+            {dimension::angle, {.min = 0, .max = 0.5 * std::numbers::pi, .max_excluded = true}},
+            law.contact_angle);
+}
+
+void describe_linear(Keys& keys, LinearSpec& linear) {
+  keys.real({"largest_overlap", "of an impact at that speed, over the smaller radius"},
+            {dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true}}, linear.largest_overlap);
+  std::optional<Real> speed;
+  if (linear.speed > 0) speed = linear.speed;
+  keys.real({"speed", "of the impact", Need::has_default, "time.impact_speed"},
+            {dimension::velocity, range::positive}, speed);
+  if (speed) linear.speed = *speed;
 }
 
 }  // namespace
@@ -80,6 +107,11 @@ void describe_contacts(Keys& keys, CaseSpec& spec) {
                   {"clip", "no attraction when particles part; false is for comparison with closed forms"},
                   c.clip);
             });
+        inner.section<CohesionSpec>({"cohesion", "attraction between particles; none without this section"},
+                                    contacts.cohesion, describe_cohesion);
+        inner.section<LinearSpec>(
+            {"linear", "stiffness of the linear law for pairs that give none; only with model.normal linear"},
+            contacts.linear, describe_linear);
         inner.list<PairSpec>({"pairs", "properties of each pair of materials that can meet"}, {},
                              contacts.pairs,
                              [&](Keys& pair_keys, PairSpec& pair) { describe_pair(pair_keys, pair, spec); });

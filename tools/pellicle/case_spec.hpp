@@ -16,6 +16,7 @@
 #include "core/types.hpp"
 #include "core/vector.hpp"
 #include "coupling/coupling_options.hpp"
+#include "dem/cohesion_laws.hpp"
 #include "dem/fill.hpp"
 #include "dem/size_distribution.hpp"
 
@@ -45,7 +46,8 @@ struct MaterialSpec {
   std::string name;
   bool rigid = false;       ///< named by a wall but not among `materials`: has none of the properties below
   Real density = 0;         ///< [kg/m3]
-  Real youngs_modulus = 0;  ///< [Pa]
+  Real youngs_modulus = 0;  ///< that contacts have [Pa]
+  std::optional<Real> true_youngs_modulus{};  ///< of the real solid [Pa], to tell what softening saves
   Real poisson_ratio = 0;
 };
 
@@ -54,13 +56,28 @@ struct PairSpec {
   int material_a = 0, material_b = 0;  ///< indices into CaseSpec::materials
   Real restitution = 0;
   Real sliding_friction = 0;
-  Real rolling_friction = 0;  ///< ratio to the reduced radius R*
+  Real rolling_friction = 0;               ///< ratio to the reduced radius R*
+  std::optional<Real> normal_stiffness{};  ///< of the linear law [N/m]; none: from LinearSpec
+};
+
+/// Stiffness of the linear law where a pair gives none.
+struct LinearSpec {
+  Real largest_overlap = 0.01;  ///< over the smaller radius
+  Real speed = 0;               ///< of the impact that overlaps so much [m/s]; 0: time.impact_speed
+};
+
+/// Liquid bridges.
+struct CohesionSpec {
+  std::string model = "willett";
+  dem::Willett willett;
 };
 
 struct ContactSpec {
   std::string normal = "hertz";
   std::string tangential = "viscous_coulomb";
   std::string rolling = "constant_torque";
+  std::optional<CohesionSpec> cohesion;
+  std::optional<LinearSpec> linear;  ///< only with the linear law
   bool clip = true;          ///< no attraction at release; the damping then is the one that gives back e
   Real overlap_limit = 0.5;  ///< a larger overlap stops the run; fraction of the (smaller) radius
   std::vector<PairSpec> pairs;

@@ -34,6 +34,25 @@ class Facts {
 
 std::string millimetres(Real length) { return fmt::format("{:.4g}", 1e3 * length); }
 
+/// What the run saves with contacts softer than the real ones.
+void add_true_moduli(Facts& facts, const CaseSpec& spec) {
+  std::string softened;
+  for (const auto& material : spec.materials) {
+    if (!material.true_youngs_modulus) continue;
+    softened += fmt::format("{}{} {:.3g} instead of {:.3g} Pa", softened.empty() ? "" : ", ", material.name,
+                            material.youngs_modulus, *material.true_youngs_modulus);
+  }
+  if (softened.empty()) return;
+  if (spec.contacts.linear) {
+    facts.add("softened", "{}: no matter to linear springs", softened);
+    return;
+  }
+  const Real real_bound = particle_step_bound(spec, true).bound;
+  facts.add("softened",
+            "{}; the true moduli would bound the particle step to {:.3g} s, {:.0f} times as many steps",
+            softened, real_bound, particle_step_bound(spec).bound / real_bound);
+}
+
 void add_particles(Facts& facts, const CaseSpec& spec) {
   Real mass = 0;
   for (std::size_t i = 0; i < spec.particles.size(); ++i) {
@@ -50,10 +69,11 @@ void add_particles(Facts& facts, const CaseSpec& spec) {
                                ? millimetres(diameters.smallest)
                                : millimetres(diameters.smallest) + " to " + millimetres(diameters.largest);
   facts.add("particles", "{}, diameter {} mm, {:.4g} kg in all", particle_count(spec), size, mass);
-  const StepBound bound = particle_step_bound(spec);
+  const dem::TimeStepBound bound = particle_step_bound(spec);
   facts.add("particle step", "{:g} s, {:.0f} % of the bound {:.3g} s at impacts of {:g} m/s",
             spec.time.particle_step, 100 * spec.time.particle_step / bound.bound, bound.bound,
             spec.time.impact_speed);
+  add_true_moduli(facts, spec);
 }
 
 /// Largest speed of the gas at an inlet [m/s], and its Courant number there.

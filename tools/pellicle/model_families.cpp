@@ -48,6 +48,7 @@ constinit const core::ModelList fill_patterns = fill_pattern_list;
 constinit const core::ModelList normal_contact_models = core::model_list<dem::NormalLaw>();
 constinit const core::ModelList tangential_contact_models = core::model_list<dem::TangentialLaw>();
 constinit const core::ModelList rolling_models = core::model_list<dem::RollingLaw>();
+constinit const core::ModelList cohesion_models = core::model_list<dem::CohesionLaw>();
 constinit const core::ModelList drag_laws = core::model_list<coupling::DragLaw>();
 constinit const core::ModelList depositions = core::model_list<coupling::Deposition>();
 constinit const core::ModelList line_quantities = line_quantity_list;
@@ -58,6 +59,7 @@ const std::vector<ModelFamily>& model_families() {
       {"contacts.model.normal", "Normal contact force", normal_contact_models},
       {"contacts.model.tangential", "Tangential contact force", tangential_contact_models},
       {"contacts.model.rolling", "Rolling resistance", rolling_models},
+      {"contacts.cohesion.model", "Attraction between particles", cohesion_models},
       {"particles.diameter", "Ways in which the diameters of a fill are spread",
        core::model_list<dem::SizeDistribution>()},
       {"particles.fill.pattern", "Ways to fill a region with particles", fill_patterns},

@@ -17,6 +17,7 @@ extern const core::ModelList fill_patterns;  ///< dem::FillPattern
 extern const core::ModelList normal_contact_models;
 extern const core::ModelList tangential_contact_models;
 extern const core::ModelList rolling_models;
+extern const core::ModelList cohesion_models;
 extern const core::ModelList drag_laws;
 extern const core::ModelList depositions;
 
