@@ -538,7 +538,7 @@ TEST(CaseParticles, PopulationsOfOneRegionMix) {
 
 TEST(CaseErrors, RoundRegions) {
   EXPECT_EQ(errors(powders_case, {"particles.3.fill.cone.to_radius=30 mm"}).substr(0, 64),
-            "c.yaml:13: particles.3.fill.cone: it reaches out of the domain; ");
+            "c.yaml:17: particles.3.fill.cone: it reaches out of the domain; ");
   EXPECT_EQ(
       errors(powders_case, {"particles.3.fill.cone.to_radius=0", "particles.3.fill.cone.from_radius=0"}),
       "--set: particles.3.fill.cone.to_radius: both radii are 0; one greater than 0");
