@@ -93,7 +93,8 @@ void place_rows(const NeighbourList& list, Index first_block, Index blocks, std:
           n += length;
         }
         if (end == list.count) list.offset(end) = start + n;
-        const std::int32_t* const from = staging.data() + static_cast<std::size_t>(b) * capacity;
+        const std::int32_t* const from =
+            staging.data() + static_cast<std::size_t>(b) * static_cast<std::size_t>(capacity);
         std::int32_t* const to = list.partner.data() + start;
         for (std::int32_t i = 0; i < n; ++i) to[i] = from[i];
       });

@@ -60,7 +60,8 @@ struct FindRows {
 
   /// `largest` is the room that the fullest block needs.
   KOKKOS_INLINE_FUNCTION void operator()(const Index b, std::int32_t& largest) const {
-    std::int32_t* const out = in.staging.data() + static_cast<std::size_t>(b) * in.capacity;
+    std::int32_t* const out =
+        in.staging.data() + static_cast<std::size_t>(b) * static_cast<std::size_t>(in.capacity);
     std::int32_t n = 0;
     const Index begin = (in.first_block + b) * row_block;
     const Index end = Kokkos::min(begin + row_block, in.particles.count);
@@ -105,7 +106,8 @@ struct FindRowsInLanes {
     using lanes::Mask8;
     using lanes::Real8;
     constexpr std::int32_t width = 8;
-    std::int32_t* const out = in.staging.data() + static_cast<std::size_t>(b) * in.capacity;
+    std::int32_t* const out =
+        in.staging.data() + static_cast<std::size_t>(b) * static_cast<std::size_t>(in.capacity);
     // Entries that there is no room for go to the end, over each other, so that they are counted.
     const std::int32_t last = in.capacity - width;
     const std::int32_t* const order = in.order.data();
