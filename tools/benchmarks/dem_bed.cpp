@@ -120,7 +120,7 @@ dem::EngineSetup make_setup(const Options& options) {
       dem::PlaneWall wall;
       wall.point = side == 0 ? setup.domain.box.min : setup.domain.box.max;
       wall.normal[axis] = side == 0 ? 1 : -1;
-      setup.walls.push_back(wall);
+      setup.walls.emplace_back(wall);
     }
   }
   return setup;

@@ -80,7 +80,7 @@ dem::EngineSetup make_setup(const Vec3& size, bool periodic, Real rolling) {
       wall.point = side == 0 ? setup.domain.box.min : setup.domain.box.max;
       wall.normal[axis] = side == 0 ? 1 : -1;
       wall.material = 1;
-      setup.walls.push_back(wall);
+      setup.walls.emplace_back(wall);
     }
   }
   return setup;
@@ -130,9 +130,11 @@ Scene make_scene(const Bed& bed, int count, Real agitation) {
   const auto one = static_cast<int>(bed.positions.size());
   if (bed.walls && count % one == 0) {
     // Whole copies, so that no wall cuts the bed and loosens it.
-    auto along = std::max(1, static_cast<int>(std::sqrt(count / one)));
-    while (count / one % along != 0) --along;
-    scene.size = {along * bed.width, count / one / along * bed.depth, 0.3};
+    const int copies = count / one;
+    int along = std::max(1, static_cast<int>(std::sqrt(copies)));
+    while (copies % along != 0) --along;
+    const int across = copies / along;
+    scene.size = {along * bed.width, across * bed.depth, 0.3};
   }
   unsigned state = 12345;
   const auto random = [&state] {
