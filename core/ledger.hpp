@@ -34,10 +34,10 @@ class ExactSum {
 };
 
 /// What is conserved; the names in summary.json.
-enum class Conserved { gas_mass, momentum, energy, water, solids };
-inline constexpr int conserved_count = 5;
-inline constexpr std::array<std::string_view, conserved_count> conserved_names{"gas_mass", "momentum",
-                                                                               "energy", "water", "solids"};
+enum class Conserved { gas_mass, momentum, energy, water, solids, particle_mass };
+inline constexpr int conserved_count = 6;
+inline constexpr std::array<std::string_view, conserved_count> conserved_names{
+    "gas_mass", "momentum", "energy", "water", "solids", "particle_mass"};
 
 /// For every conserved quantity: defect = |stock - stock0 - through boundaries - sources| / max(gross exchanged,
 /// |stock0|). Scalars use the x component; momentum all three, with the vector's length. Units are the quantity's

@@ -29,6 +29,8 @@ inline constexpr Dimension angle{"an angle", "rad", "30 deg"};
 inline constexpr Dimension density{"a density", "kg/m3", "2.5 g/cm3"};
 inline constexpr Dimension pressure{"a pressure", "Pa", "1 bar"};
 inline constexpr Dimension viscosity{"a dynamic viscosity", "Pa s", "18 uPa s"};
+inline constexpr Dimension mass_flow_rate{"a mass flow rate", "kg/s", "5 g/s"};
+inline constexpr Dimension frequency{"a rate", "1/s", "200 1/s"};
 inline constexpr Dimension flow_rate{"a volume flow rate", "m3/s", "73.5 m3/h"};
 inline constexpr Dimension surface_tension{"a surface tension", "N/m", "72 mN/m"};
 inline constexpr Dimension stiffness{"a stiffness", "N/m", "1 kN/m"};

@@ -57,6 +57,8 @@ class Feed {
   /// Mass (or number) that is due by `time` and has not entered, less what the next particle needs to be due.
   Real waiting(Real time) const;
 
+  /// Whether the rate is one of particles, not of mass.
+  bool counts_particles() const { return setup_.by_count; }
   /// Radii of the smallest and largest particle [m], and about how many there will be.
   Real smallest_radius() const;
   Real largest_radius() const;

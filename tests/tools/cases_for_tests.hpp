@@ -102,6 +102,11 @@ particles:
                       outer_radius: "20 mm"}, pattern: hexagonal}}
   - {material: glass, count: 100, diameter: {table: {diameters: ["1 mm", "2 mm", "3 mm"], finer: [0, 0.2, 1]}},
      fill: {box: {min: [0, 0, "90 mm"], max: ["40 mm", "40 mm", "100 mm"]}}}
+  - {material: glass, diameter: {uniform: {min: "1 mm", max: "2 mm"}}, velocity: [0, 0, -1],
+     feed: {disc: {centre: ["20 mm", "20 mm", "100 mm"], normal: [0, 0, 2], radius: "10 mm"}, mass_rate: "20 g/s",
+            from: "10 ms", to: "50 ms"}}
+  - {material: glass, diameter: "2 mm", feed: {box: {min: [0, 0, "100 mm"], max: ["40 mm", "40 mm", "100 mm"]},
+                                              rate: "1000 1/s"}}
 )";
 
 /// Walls of every shape and motion.

@@ -53,6 +53,16 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
     }
     setup.walls.push_back(make_wall(spec, wall));
   }
+  for (const PopulationSpec& population : spec.particles) {
+    if (!population.feed) continue;
+    const DiameterRange diameters = diameter_range(population);
+    dem::LaterParticles& later = setup.later;
+    later.materials.push_back(population.material);
+    later.smallest_radius = later.count == 0 ? 0.5 * diameters.smallest
+                                             : std::min(later.smallest_radius, 0.5 * diameters.smallest);
+    later.largest_radius = std::max(later.largest_radius, 0.5 * diameters.largest);
+    later.count += std::max(std::int64_t{1}, fed_count(spec, population));
+  }
   setup.gravity = spec.gravity;
   setup.time_step = particle_step;
   return setup;

@@ -5,6 +5,7 @@
 
 #include "coupling/coupling_options.hpp"
 #include "dem/engine.hpp"
+#include "dem/feed.hpp"
 #include "tools/pellicle/case_spec.hpp"
 
 namespace pellicle::tools {
@@ -14,6 +15,9 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step);
 
 /// All particles of the case, populations in the order of the file. Throws InputError if they do not fit.
 std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec);
+
+/// The feeds of the case, in the order of the file.
+std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::Domain& domain);
 
 coupling::CouplingOptions make_coupling_options(const CaseSpec& spec);
 

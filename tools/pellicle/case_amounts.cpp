@@ -78,6 +78,20 @@ std::int64_t particle_count(const CaseSpec& spec) {
   return count;
 }
 
+std::int64_t fed_count(const CaseSpec& spec, const PopulationSpec& population) {
+  if (!population.feed) return 0;
+  const FeedSpec& feed = *population.feed;
+  const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
+  const Real rate = feed.rate ? *feed.rate : *feed.mass_rate / (density * mean_particle_volume(population));
+  return whole_number(std::ceil(rate * std::max(Real{0}, feed.to - feed.from)));
+}
+
+std::int64_t fed_count(const CaseSpec& spec) {
+  std::int64_t count = 0;
+  for (const auto& population : spec.particles) count += fed_count(spec, population);
+  return count;
+}
+
 DiameterRange diameter_range(const PopulationSpec& population) {
   DiameterRange range;
   const auto add = [&](Real smallest, Real largest) {
@@ -87,7 +101,7 @@ DiameterRange diameter_range(const PopulationSpec& population) {
   if (population.sizes) {
     const dem::SizeSampler sizes(*population.sizes->distribution());
     add(sizes.smallest(), sizes.largest());
-  } else if (population.fill) {
+  } else if (population.fill || population.feed) {
     add(population.diameter, population.diameter);
   }
   for (const auto& particle : population.list) add(particle.diameter, particle.diameter);
@@ -123,7 +137,8 @@ bool can_meet(const CaseSpec& spec, int material_a, int material_b) {
   if (material_a == material_b) {
     std::int64_t count = 0;
     for (const auto& population : spec.particles) {
-      if (population.material == material_a) count += particle_count(population);
+      if (population.material == material_a)
+        count += particle_count(population) + fed_count(spec, population);
     }
     return count > 1 || (count == 1 && of_walls(material_a));
   }

@@ -140,11 +140,13 @@ class Checker {
     check_cohesion();
     for (const auto& population : spec_.particles) {
       if (population.fill) check_fill(population);
+      if (population.feed) check_feed(*population.feed);
       for (std::size_t i = 0; i < population.list.size(); ++i) check_listed(population, i);
     }
-    if (particle_count(spec_) > std::numeric_limits<Index>::max()) {
-      wrong_key("particles", fmt::format("they are {}; at most {}", particle_count(spec_),
-                                         std::numeric_limits<Index>::max()));
+    const std::int64_t count = particle_count(spec_) + fed_count(spec_);
+    if (count > std::numeric_limits<Index>::max()) {
+      wrong_key("particles",
+                fmt::format("they are {}; at most {}", count, std::numeric_limits<Index>::max()));
     }
   }
 
@@ -233,6 +235,23 @@ class Checker {
                           ? "with those of the same region they"
                           : "they",
                       fraction, limit, fill_patterns[static_cast<std::size_t>(fill.pattern)].name));
+    }
+  }
+
+  void check_feed(const FeedSpec& feed) {
+    Box bounds = feed.box ? *feed.box : Box{feed.disc->centre, feed.disc->centre};
+    for (int axis = 0; axis < 3 && feed.disc; ++axis) {
+      const Real n = feed.disc->normal[axis];
+      const Real out = feed.disc->radius * std::sqrt(std::max(0.0, 1 - n * n));
+      bounds.min[axis] -= out;
+      bounds.max[axis] += out;
+    }
+    if (!(inside(bounds.min) && inside(bounds.max))) {
+      wrong(feed.where, feed.box ? "box" : "disc", "it reaches out of the domain; " + domain_text());
+    }
+    if (!(feed.to > feed.from)) {
+      wrong(feed.where, "to",
+            fmt::format("from {:g} to {:g} s is no time; later than from", feed.from, feed.to));
     }
   }
 
@@ -387,9 +406,10 @@ class Checker {
       for (const auto& wall : spec_.walls) names += (names.empty() ? "" : ", ") + wall.name;
       wrong(probe.where, "wall",
             fmt::format("no wall \"{}\"; {}", *probe.wall, names.empty() ? "the case has none" : names));
-    } else if (probe.particle && *probe.particle >= particle_count(spec_)) {
+    } else if (probe.particle && *probe.particle >= particle_count(spec_) + fed_count(spec_)) {
       wrong(probe.where, "particle",
-            fmt::format("there is no particle {}; 0 to {}", *probe.particle, particle_count(spec_) - 1));
+            fmt::format("there is no particle {}; 0 to {}", *probe.particle,
+                        particle_count(spec_) + fed_count(spec_) - 1));
     }
   }
 

@@ -30,8 +30,12 @@ Real draw_diameter(const CaseSpec& spec, std::size_t population, const dem::Size
 /// Radii of all particles of a population's fill [m].
 std::vector<Real> draw_radii(const CaseSpec& spec, std::size_t population);
 
+/// Particles at the start.
 std::int64_t particle_count(const PopulationSpec& population);
 std::int64_t particle_count(const CaseSpec& spec);
+/// Particles that feeds are to bring in, about.
+std::int64_t fed_count(const CaseSpec& spec, const PopulationSpec& population);
+std::int64_t fed_count(const CaseSpec& spec);
 
 /// Diameters of the smallest and largest particle [m], those that a distribution allows; 0 without particles.
 struct DiameterRange {

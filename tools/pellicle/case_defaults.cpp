@@ -58,15 +58,14 @@ Real default_thickness(const CaseSpec& spec, const LineSpec& line) {
   return thickness;
 }
 
-/// How many particles each fill comes to.
+/// How many particles each fill comes to; distributions of fills and feeds.
 void count_fills(CaseSpec& spec, core::InputProblems& problems) {
   for (std::size_t i = 0; i < spec.particles.size(); ++i) {
     PopulationSpec& population = spec.particles[i];
-    if (!population.fill) continue;
     try {
       if (population.sizes)
         (void)dem::SizeSampler(*population.sizes->distribution());  // throws here, not later
-      population.filled = count_fill(spec, i);
+      if (population.fill) population.filled = count_fill(spec, i);
     } catch (const std::invalid_argument& error) {
       problems.add(spec.where(fmt::format("particles.{}.diameter", i)),
                    fmt::format("{}; a distribution with sizes between its bounds", error.what()));
@@ -85,6 +84,9 @@ void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
   }
   count_fills(spec, problems);
   if (spec.gas && spec.coupling.transfer_grid.cells.x == 0) spec.coupling.transfer_grid = spec.gas->grid;
+  for (auto& population : spec.particles) {
+    if (population.feed && population.feed->to == 0) population.feed->to = spec.time.end;
+  }
   for (auto& line : spec.output.lines) {
     if (line.thickness == 0) line.thickness = default_thickness(spec, line);
     if (line.average.to == 0) line.average.to = spec.time.end;

@@ -1,6 +1,8 @@
 // Keys of populations of particles: how many, how large, where.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "tools/pellicle/case_keys.hpp"
 #include "tools/pellicle/model_families.hpp"
 
@@ -136,6 +138,33 @@ void describe_fill(Keys& keys, FillSpec& fill) {
       {dimension::pure_number, {.min = 0, .max = 0.74, .min_excluded = true}}, fill.solids_fraction);
 }
 
+void describe_disc(Keys& keys, dem::DiscRegion& disc) {
+  keys.vector({"centre", "of the disc", Need::required}, {dimension::length}, disc.centre);
+  keys.vector({"normal", "at right angles to it, of any length", Need::required}, {}, disc.normal);
+  keys.real({"radius", "of the disc", Need::required}, {dimension::length, range::positive}, disc.radius);
+  if (!keys.reading() || !keys.given("normal")) return;
+  const Real length = norm(disc.normal);
+  if (length == 0) keys.problem("normal", "it has no length; a direction such as [0, 0, 1]");
+  // A normal of length 1 is kept to the bit, so that the resolved file reads back as it is.
+  if (length > 0 && std::abs(length - 1) > 1e-15) disc.normal *= 1 / length;
+}
+
+void describe_feed(Keys& keys, FeedSpec& feed) {
+  if (keys.reading()) feed.where = keys.where();
+  keys.section<Box>({"box", "particles enter inside a box, or on it where it is flat"}, feed.box,
+                    describe_flat_box);
+  keys.section<dem::DiscRegion>({"disc", "particles enter with their centres on a disc"}, feed.disc,
+                                describe_disc);
+  keys.exactly_one({"box", "disc"});
+  keys.real({"mass_rate", "mass that enters over time"}, {dimension::mass_flow_rate, range::positive},
+            feed.mass_rate);
+  keys.real({"rate", "particles that enter over time"}, {dimension::frequency, range::positive}, feed.rate);
+  keys.exactly_one({"mass_rate", "rate"});
+  keys.real({"from", "when it begins"}, {dimension::duration, range::non_negative}, feed.from);
+  real_or_unset(keys, {"to", "when it ends", Need::has_default, "time.end"},
+                {dimension::duration, range::positive}, feed.to);
+}
+
 void describe_listed(Keys& keys, ListedParticleSpec& particle) {
   keys.vector({"position", "of the centre", Need::required}, {dimension::length}, particle.position);
   keys.vector({"velocity", "initial", Need::has_default, "that of the population"}, {dimension::velocity},
@@ -161,6 +190,14 @@ void check_amount(Keys& keys, const PopulationSpec& population) {
     if (!keys.given("diameter")) {
       keys.problem("diameter", "missing; a fill needs a length greater than 0");
     }
+  } else if (population.feed) {
+    for (const auto* key : {"count", "total_mass"}) {
+      if (keys.given(key)) keys.problem(key, "the rate of the feed says how many; only with fill");
+    }
+    if (population.fixed) keys.problem("fixed", "particles of a feed move; only with fill or list");
+    if (!keys.given("diameter")) {
+      keys.problem("diameter", "missing; a feed needs a length greater than 0");
+    }
   } else {
     for (const auto* key : {"count", "total_mass"}) {
       if (keys.given(key)) keys.problem(key, "the list says how many; only with fill");
@@ -172,10 +209,10 @@ void check_amount(Keys& keys, const PopulationSpec& population) {
 void describe_diameter(Keys& keys, PopulationSpec& population) {
   std::optional<Real> diameter;
   if (population.diameter != 0) diameter = population.diameter;
-  keys.real_or_section<SizesSpec>({"diameter", "of each particle, or how the diameters of a fill are spread",
-                                   Need::has_default, "required with fill; else that of each particle"},
-                                  {dimension::length, range::positive}, diameter, population.sizes,
-                                  describe_sizes);
+  keys.real_or_section<SizesSpec>(
+      {"diameter", "of each particle, or how the diameters of a fill are spread", Need::has_default,
+       "required with fill and feed; else that of each particle"},
+      {dimension::length, range::positive}, diameter, population.sizes, describe_sizes);
   if (diameter) population.diameter = *diameter;
 }
 
@@ -204,7 +241,10 @@ void describe_population(Keys& keys, PopulationSpec& population, CaseSpec& spec)
           inner.problem("diameter", "missing here and in the population; a length greater than 0");
         }
       });
-  keys.exactly_one({"fill", "list"});
+  keys.section<FeedSpec>(
+      {"feed", "particles that enter during the run; their ids go on from those of the start"},
+      population.feed, describe_feed);
+  keys.exactly_one({"fill", "list", "feed"});
   if (keys.reading()) check_amount(keys, population);
 }
 

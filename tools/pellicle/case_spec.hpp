@@ -17,6 +17,7 @@
 #include "core/vector.hpp"
 #include "coupling/coupling_options.hpp"
 #include "dem/cohesion_laws.hpp"
+#include "dem/feed.hpp"
 #include "dem/fill.hpp"
 #include "dem/size_distribution.hpp"
 
@@ -99,6 +100,18 @@ struct FillSpec {
   bool mixes_with(const FillSpec& other) const;
 };
 
+/// Particles that enter during the run.
+struct FeedSpec {
+  std::string where;
+  // Exactly one is set.
+  std::optional<Box> box;
+  std::optional<dem::DiscRegion> disc;
+  // Exactly one is set.
+  std::optional<Real> mass_rate;  ///< [kg/s]
+  std::optional<Real> rate;       ///< [1/s]
+  Real from = 0, to = 0;          ///< [s]; `to` is filled in
+};
+
 struct ListedParticleSpec {
   Vec3 position;      ///< [m]
   Vec3 velocity;      ///< [m/s]
@@ -119,7 +132,7 @@ struct SizesSpec {
   std::optional<dem::SizeDistribution> distribution() const;
 };
 
-/// Particles of one material: either a fill or a list.
+/// Particles of one material: a fill, a list or a feed.
 struct PopulationSpec {
   std::string where;
   int material = 0;  ///< index into CaseSpec::materials
@@ -133,6 +146,7 @@ struct PopulationSpec {
   bool fixed = false;              ///< likewise: never moves, but is felt by others and by the gas
   std::optional<FillSpec> fill;
   std::vector<ListedParticleSpec> list;
+  std::optional<FeedSpec> feed;
   std::int64_t filled = 0;  ///< particles of the fill: follows from the above, see count_fill
 };
 

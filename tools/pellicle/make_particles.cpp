@@ -94,4 +94,29 @@ std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec) {
   return particles;
 }
 
+std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::Domain& domain) {
+  std::vector<dem::Feed> feeds;
+  for (std::size_t i = 0; i < spec.particles.size(); ++i) {
+    const PopulationSpec& population = spec.particles[i];
+    if (!population.feed) continue;
+    const FeedSpec& feed = *population.feed;
+    dem::FeedSetup setup;
+    if (feed.box) setup.region = *feed.box;
+    if (feed.disc) setup.region = *feed.disc;
+    setup.domain = domain;
+    setup.from = feed.from;
+    setup.to = feed.to;
+    setup.by_count = feed.rate.has_value();
+    setup.rate = feed.rate ? *feed.rate : *feed.mass_rate;
+    setup.density = spec.materials[static_cast<std::size_t>(population.material)].density;
+    setup.diameter = population.diameter;
+    if (population.sizes) setup.diameter = *population.sizes->distribution();
+    setup.particle = {{}, population.velocity, population.spin, 0, population.material, false};
+    setup.seed = spec.seed;
+    setup.stream = static_cast<std::int64_t>(i);
+    feeds.emplace_back(setup);
+  }
+  return feeds;
+}
+
 }  // namespace pellicle::tools

@@ -34,7 +34,10 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
       options_(options),
       time_(spec.time.end, spec.time.gas_step, spec.time.particle_step,
             spec.particles.empty() ? 0 : spec.time.settle) {
-  if (!spec_.particles.empty()) particles_.emplace(make_engine_setup(spec_, time_.particle_step()));
+  if (!spec_.particles.empty()) {
+    particles_.emplace(make_engine_setup(spec_, time_.particle_step()));
+    feeds_ = make_feeds(spec_, particles_->setup().domain);
+  }
   if (spec_.gas) {
     gas_.emplace(make_grid(spec_.gas->grid, spec_.domain), spec_.gas->options, spec_.gas->boundaries);
     no_particles_ = cfd::make_empty_exchange(gas_->grid());
@@ -75,6 +78,7 @@ void Simulation::resume() {
   core::log().open_file(folder_->run_log());
   time_.load(file);
   if (particles_) particles_->load(file);
+  for (std::size_t i = 0; i < feeds_.size(); ++i) feeds_[i].load(file, "feeds/" + std::to_string(i));
   if (gas_ && time_.step() >= 0) gas_->load(file);
   if (exchange_ && time_.step() >= 0) exchange_->load(file);
   ledger_.load(file);
@@ -91,6 +95,7 @@ void Simulation::resume() {
   settled_gravity_ = file.read_vec3("run/settled_gravity");
   settled_wall_ = file.read_vec3("run/settled_wall");
   settled_volume_time_ = file.read_double("run/settled_volume_time");
+  settled_left_mass_ = file.read_double("run/settled_left_mass");
   summary_.largest_overlap = file.read_double("run/largest_overlap");
   summary_.largest_overlap_ratio = file.read_double("run/largest_overlap_ratio");
   summary_.largest_impact_speed = file.read_double("run/largest_impact_speed");
@@ -135,6 +140,11 @@ int Simulation::run() {
 
 /// What the engines had to put up with since this process began, for the log.
 void Simulation::report_numerics() const {
+  for (std::size_t i = 0; i < feeds_.size(); ++i) {
+    if (!feeds_[i].is_due(time_.time())) continue;
+    core::log().warn("feed {}: there was no room for all particles; {:.3g} {} wait to enter", i,
+                     feeds_[i].waiting(time_.time()), feeds_[i].counts_particles() ? "particles" : "kg");
+  }
   if (gas_) core::log().info("largest Courant number of the gas: {:.3g}", largest_courant_);
   if (crowded_steps_ > 0) {
     core::log().warn("in {} gas steps a transfer cell stayed below coupling.minimum_void_fraction",
@@ -148,6 +158,7 @@ void Simulation::report_numerics() const {
 }
 
 void Simulation::advance_outer_step() {
+  feed_particles();
   sample_gas();
   move_particles();
   deposit_particles();
@@ -155,6 +166,16 @@ void Simulation::advance_outer_step() {
   watch_contacts();
   time_.advance();
   if (time_.step() == 0) release_gas();  // from below: the bed has settled
+}
+
+void Simulation::feed_particles() {
+  if (time_.settling()) return;
+  const core::Timers::Scope scope(timers_, Part::neighbours);
+  for (dem::Feed& feed : feeds_) {
+    if (!feed.is_due(time_.time())) continue;
+    particles_->add_particles(
+        feed.draw(time_.time(), time_.step(), dem::spheres_near(*particles_, feed.reach())));
+  }
 }
 
 void Simulation::sample_gas() {
@@ -211,6 +232,8 @@ void Simulation::release_gas() {
     settled_gravity_ = particles_->gravity_impulse();
     settled_volume_time_ = particles_->volume_time();
     settled_wall_ = impulse_through_walls();
+    ledger_.open(Conserved::particle_mass, particles_->compute_totals().mass);
+    settled_left_mass_ = particles_->left_mass();
     particles_->start_walls();
     for (WallFigures& wall : walls_) wall.impulse = wall.angular_impulse = Vec3{};
   }
@@ -278,7 +301,11 @@ void Simulation::update_ledger() {
   if (particles_) {
     const dem::ParticleTotals totals = particles_->compute_totals();
     stock += totals.momentum;
-    through += impulse_through_walls() - settled_wall_;
+    through += impulse_through_walls() - settled_wall_ + particles_->entered_momentum();
+    const Real left_mass = particles_->left_mass() - settled_left_mass_;
+    ledger_.set_stock(Conserved::particle_mass, totals.mass);
+    ledger_.set_totals(Conserved::particle_mass, Vec3{particles_->entered_mass() - left_mass, 0, 0}, Vec3{},
+                       particles_->entered_mass() + left_mass);
     const Vec3 gravity = particles_->gravity_impulse() - settled_gravity_;
     sources += gravity;
     gross += norm(gravity);
@@ -327,6 +354,7 @@ void Simulation::write_checkpoint() {
   file.write("case", options_.case_yaml_text);
   time_.save(file);
   if (particles_) particles_->save(file);
+  for (std::size_t i = 0; i < feeds_.size(); ++i) feeds_[i].save(file, "feeds/" + std::to_string(i));
   if (gas_ && time_.step() >= 0) gas_->save(file);
   if (exchange_ && time_.step() >= 0) exchange_->save(file);
   ledger_.save(file);
@@ -342,6 +370,7 @@ void Simulation::write_checkpoint() {
   file.write("run/settled_gravity", settled_gravity_);
   file.write("run/settled_wall", settled_wall_);
   file.write("run/settled_volume_time", settled_volume_time_);
+  file.write("run/settled_left_mass", settled_left_mass_);
   file.write("run/largest_overlap", summary_.largest_overlap);
   file.write("run/largest_overlap_ratio", summary_.largest_overlap_ratio);
   file.write("run/largest_impact_speed", summary_.largest_impact_speed);
@@ -367,6 +396,13 @@ void Simulation::write_summary(const std::string& status, const std::string& mes
     summary_.contacts_per_particle = contacts_per_particle();
     summary_.particles_left_through_open_sides = particles_->left_through_open_sides();
     summary_.walls = walls_;
+    summary_.mass_left = particles_->left_mass();
+    summary_.particles_fed = 0;
+    summary_.mass_fed = 0;
+    for (const dem::Feed& feed : feeds_) {
+      summary_.particles_fed += feed.fed_particles();
+      summary_.mass_fed += feed.fed_mass();
+    }
   }
   summary_.peak_memory_bytes = peak_memory_bytes();
   tools::write_summary(folder_->summary(), summary_);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cfd/gas_solver.hpp"
 #include "core/ledger.hpp"
@@ -13,6 +14,7 @@
 #include "core/types.hpp"
 #include "coupling/momentum_exchange.hpp"
 #include "dem/engine.hpp"
+#include "dem/feed.hpp"
 #include "tools/pellicle/case_spec.hpp"
 #include "tools/pellicle/outputs.hpp"
 #include "tools/pellicle/results_folder.hpp"
@@ -49,9 +51,10 @@ class Simulation {
   void start();
   void resume();
 
-  // One outer step, in the order of docs/theory: the gas is sampled, the particles move, they are deposited, the gas
+  // One outer step, in the order of docs/theory: particles enter, the gas is sampled, the particles move, they are deposited, the gas
   // moves.
   void advance_outer_step();
+  void feed_particles();
   void sample_gas();
   void move_particles();
   void deposit_particles();
@@ -75,6 +78,7 @@ class Simulation {
   std::optional<ResultsFolder> folder_;
 
   std::optional<dem::Engine> particles_;
+  std::vector<dem::Feed> feeds_;
   std::optional<cfd::GasSolver> gas_;
   std::optional<coupling::MomentumExchange> exchange_;
   std::optional<Outputs> outputs_;
@@ -92,6 +96,7 @@ class Simulation {
   std::vector<WallFigures> walls_;           // of each wall
   Vec3 settled_gravity_{}, settled_wall_{};  // gravity and impulse_through_walls before t = 0 [N s]
   Real settled_volume_time_ = 0;             // [m3 s]
+  Real settled_left_mass_ = 0;               // [kg]
   double wall_begin_ = 0, wall_before_ = 0;  // of this process, and of those before it [s]
 };
 

@@ -85,6 +85,9 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
                                 {"angular_impulse", list(wall.angular_impulse)},
                                 {"contacts", wall.contacts}};
   }
+  json["mass_left"] = summary.mass_left;
+  json["particles_fed"] = summary.particles_fed;
+  json["mass_fed"] = summary.mass_fed;
   core::write_file_atomically(path, json.dump(2) + "\n");
 }
 
@@ -128,6 +131,9 @@ Summary read_summary(const std::filesystem::path& path) {
         summary.walls.push_back({name, vector("impulse"), vector("angular_impulse"), wall.at("contacts")});
       }
     }
+    summary.mass_left = json.at("mass_left");
+    summary.particles_fed = json.at("particles_fed");
+    summary.mass_fed = json.at("mass_fed");
     return summary;
   } catch (const Json::exception& error) {
     throw RunError(fmt::format("{}: not a summary of a run: {}", path.string(), error.what()));
@@ -160,7 +166,11 @@ std::string report_text(const Summary& summary) {
     line("largest impact speed", fmt::format("{:.4g} m/s", summary.largest_impact_speed));
     line("lost particles", fmt::format("{}", summary.lost_particles));
     if (summary.particles_left_through_open_sides > 0) {
-      line("left through open sides", fmt::format("{}", summary.particles_left_through_open_sides));
+      line("left through open sides",
+           fmt::format("{}, {:.4g} kg", summary.particles_left_through_open_sides, summary.mass_left));
+    }
+    if (summary.particles_fed > 0) {
+      line("fed", fmt::format("{}, {:.4g} kg", summary.particles_fed, summary.mass_fed));
     }
   }
   for (std::size_t q = 0; q < summary.defects.size(); ++q) {

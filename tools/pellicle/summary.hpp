@@ -36,6 +36,9 @@ struct Summary {
       0;  ///< momentum given to the particles and not yet to the gas, over gross
   std::int64_t lost_particles = 0;
   std::int64_t particles_left_through_open_sides = 0;
+  double mass_left = 0;  ///< with them [kg]
+  std::int64_t particles_fed = 0;
+  double mass_fed = 0;  ///< [kg]
   std::int64_t gas_steps = 0;
   std::vector<WallFigures> walls;  ///< what each wall received
 
