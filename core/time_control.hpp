@@ -49,6 +49,8 @@ class TimeControl {
   bool settling() const { return step_ < 0; }
   bool finished() const { return step_ >= end_step_; }
   void advance() { ++step_; }
+  /// The next step is that at t = 0, if settling goes on.
+  void end_settling() { step_ = step_ < 0 ? 0 : step_; }
   /// Ends earlier: `--until`; never later than the case says.
   void end_at(Real time);
 

@@ -80,7 +80,7 @@ gas:
 
 /// Particles of every way to be spread in size.
 inline constexpr const char* powders_case = R"(domain: {min: [0, 0, 0], max: ["40 mm", "40 mm", "100 mm"]}
-time: {end: 0.1, particle_step: 1e-6}
+time: {end: 0.1, particle_step: 1e-6, settle: {until: quiet, at_most: "0.5 s", speed: "2 mm/s"}}
 materials: {glass: {density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.22}}
 contacts:
   model: {normal: linear, tangential: mindlin, rolling: epsd2}

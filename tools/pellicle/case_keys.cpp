@@ -44,6 +44,17 @@ void describe_domain(Keys& keys, DomainSpec& domain) {
   }
 }
 
+constexpr core::ModelInfo settle_ends[] = {{"quiet", "the root mean square speed stays below `speed`"}};
+
+void describe_settling(Keys& keys, SettleSpec& settle) {
+  std::optional<int> until = settle.until;
+  keys.choice({"until", "what ends it before at_most", Need::required}, settle_ends, until);
+  keys.real({"at_most", "after so long t = 0 comes all the same", Need::required},
+            {dimension::duration, range::positive}, settle.at_most);
+  keys.real({"speed", "of moving particles, root mean square, spin included"},
+            {dimension::velocity, range::positive}, settle.speed);
+}
+
 void describe_time(Keys& keys, TimeSpec& time) {
   keys.real({"end", "simulated time of the run, after settling", Need::required},
             {dimension::duration, range::positive}, time.end);
@@ -59,8 +70,11 @@ void describe_time(Keys& keys, TimeSpec& time) {
                 {"impact_speed", "largest impact speed expected, for the bound on particle_step",
                  Need::has_default, "largest initial speed, at least 1 m/s"},
                 {dimension::velocity, range::positive}, time.impact_speed);
-  keys.real({"settle", "particles settle for so long without gas, before t = 0"},
-            {dimension::duration, range::non_negative}, time.settle);
+  std::optional<Real> settle = time.settle;
+  keys.real_or_section<SettleSpec>({"settle", "particles settle for so long without gas, before t = 0"},
+                                   {dimension::duration, range::non_negative}, settle, time.settle_until,
+                                   describe_settling);
+  if (settle) time.settle = *settle;
   keys.flag({"allow_large_step", "accept a particle_step beyond the stability bound"}, time.allow_large_step);
 }
 

@@ -28,14 +28,25 @@ struct DomainSpec {
   std::array<bool, 3> periodic{false, false, false};
 };
 
+/// Settling until the particles hardly move.
+struct SettleSpec {
+  int until = 0;      ///< a position in `settle_ends`: quiet
+  Real at_most = 0;   ///< [s]
+  Real speed = 1e-3;  ///< root mean square of all moving particles [m/s]
+};
+
 struct TimeSpec {
   Real end = 0;  ///< [s]
   /// Outer step [s]; without gas, how often the loop looks at outputs (default 10 particle steps).
   Real gas_step = 0;
   /// [s]; gas_step / particle_step is a whole number; equals gas_step without particles.
   Real particle_step = 0;
-  Real impact_speed = 0;          ///< largest impact speed expected, for the bound on particle_step [m/s]
-  Real settle = 0;                ///< gas off, for so long before t = 0 [s]
+  Real impact_speed = 0;  ///< largest impact speed expected, for the bound on particle_step [m/s]
+  Real settle = 0;        ///< gas off, for so long before t = 0 [s]
+  std::optional<SettleSpec> settle_until;  ///< in place of `settle`, which then is 0
+
+  /// The longest that particles settle [s].
+  Real longest_settling() const { return settle_until ? settle_until->at_most : settle; }
   bool allow_large_step = false;  ///< particle_step over the bound is a warning, not an error
 
   /// Substeps an outer step: gas_step / particle_step.

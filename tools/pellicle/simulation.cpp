@@ -1,6 +1,7 @@
 #include "tools/pellicle/simulation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <utility>
 
@@ -33,7 +34,7 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
     : spec_(spec),
       options_(options),
       time_(spec.time.end, spec.time.gas_step, spec.time.particle_step,
-            spec.particles.empty() ? 0 : spec.time.settle) {
+            spec.particles.empty() ? 0 : spec.time.longest_settling()) {
   if (!spec_.particles.empty()) {
     particles_.emplace(make_engine_setup(spec_, time_.particle_step()));
     feeds_ = make_feeds(spec_, particles_->setup().domain);
@@ -96,6 +97,7 @@ void Simulation::resume() {
   settled_wall_ = file.read_vec3("run/settled_wall");
   settled_volume_time_ = file.read_double("run/settled_volume_time");
   settled_left_mass_ = file.read_double("run/settled_left_mass");
+  quiet_steps_ = file.read_int64("run/quiet_steps");
   summary_.largest_overlap = file.read_double("run/largest_overlap");
   summary_.largest_overlap_ratio = file.read_double("run/largest_overlap_ratio");
   summary_.largest_impact_speed = file.read_double("run/largest_impact_speed");
@@ -165,7 +167,29 @@ void Simulation::advance_outer_step() {
   if (!time_.settling()) move_gas();
   watch_contacts();
   time_.advance();
+  if (spec_.time.settle_until && time_.settling()) watch_settling();
   if (time_.step() == 0) release_gas();  // from below: the bed has settled
+}
+
+/// Ends the settling when the particles have been slower than asked for during the time in which free fall from rest
+/// makes them ten times as fast: at the start they rest too.
+void Simulation::watch_settling() {
+  const SettleSpec& settle = *spec_.time.settle_until;
+  const dem::ParticleTotals totals = particles_->compute_totals();
+  const Real speed = totals.mass > 0 ? std::sqrt(2 * totals.kinetic_energy / totals.mass) : 0;
+  quiet_steps_ = speed < settle.speed ? quiet_steps_ + 1 : 0;
+  const Real gravity = norm(spec_.gravity);
+  const Real fall = gravity > 0 ? 10 * settle.speed / gravity : 0;
+  const auto needed =
+      std::max(std::int64_t{20}, static_cast<std::int64_t>(std::ceil(fall / time_.gas_step())));
+  if (quiet_steps_ >= needed) {
+    core::log().info("settled after {:.4g} s: {:.3g} m/s", settle.at_most + time_.time(), speed);
+    time_.end_settling();
+  } else if (time_.step() == -1) {
+    core::log().warn(
+        "not settled after {:g} s: {:.3g} m/s is over time.settle.speed {:g} m/s, or was until now",
+        settle.at_most, speed, settle.speed);
+  }
 }
 
 void Simulation::feed_particles() {
@@ -371,6 +395,7 @@ void Simulation::write_checkpoint() {
   file.write("run/settled_wall", settled_wall_);
   file.write("run/settled_volume_time", settled_volume_time_);
   file.write("run/settled_left_mass", settled_left_mass_);
+  file.write("run/quiet_steps", quiet_steps_);
   file.write("run/largest_overlap", summary_.largest_overlap);
   file.write("run/largest_overlap_ratio", summary_.largest_overlap_ratio);
   file.write("run/largest_impact_speed", summary_.largest_impact_speed);

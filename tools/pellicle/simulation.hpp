@@ -60,6 +60,7 @@ class Simulation {
   void deposit_particles();
   void move_gas();
   void release_gas();
+  void watch_settling();
 
   Vec3 impulse_through_walls() const;
   void watch_contacts();
@@ -96,6 +97,7 @@ class Simulation {
   std::vector<WallFigures> walls_;           // of each wall
   Vec3 settled_gravity_{}, settled_wall_{};  // gravity and impulse_through_walls before t = 0 [N s]
   Real settled_volume_time_ = 0;             // [m3 s]
+  std::int64_t quiet_steps_ = 0;             // since the particles moved faster than time.settle.speed
   Real settled_left_mass_ = 0;               // [kg]
   double wall_begin_ = 0, wall_before_ = 0;  // of this process, and of those before it [s]
 };
