@@ -14,13 +14,6 @@
 
 namespace pellicle::dem {
 
-/// A flat round region.
-struct DiscRegion {
-  Vec3 centre;      ///< [m]
-  Vec3 normal;      ///< of length 1
-  Real radius = 0;  ///< [m]
-};
-
 /// What a feed is made of. Spheres are wholly inside the region, except across a direction in which it is flat: there
 /// their centres are on it.
 struct FeedSetup {

@@ -31,6 +31,13 @@ struct AnnulusRegion {
   friend bool operator==(const AnnulusRegion&, const AnnulusRegion&) = default;
 };
 
+/// A flat round region: particles can enter there, but not fill it.
+struct DiscRegion {
+  Vec3 centre;
+  Vec3 normal;  ///< of length 1
+  Real radius = 0;
+};
+
 using FillRegion = std::variant<Box, CylinderRegion, ConeRegion, AnnulusRegion>;
 
 /// Volume of a region [m³].

@@ -17,7 +17,6 @@
 #include "core/vector.hpp"
 #include "coupling/coupling_options.hpp"
 #include "dem/cohesion_laws.hpp"
-#include "dem/feed.hpp"
 #include "dem/fill.hpp"
 #include "dem/size_distribution.hpp"
 

@@ -69,15 +69,12 @@ void add_particles(Facts& facts, const CaseSpec& spec) {
                                ? millimetres(diameters.smallest)
                                : millimetres(diameters.smallest) + " to " + millimetres(diameters.largest);
   facts.add("particles", "{}, diameter {} mm, {:.4g} kg in all", particle_count(spec), size, mass);
-<<<<<<< HEAD
-  const dem::TimeStepBound bound = particle_step_bound(spec);
-=======
   for (const auto& population : spec.particles) {
     if (!population.feed) continue;
     facts.add("feed", "about {} particles from {:g} to {:g} s", fed_count(spec, population),
               population.feed->from, population.feed->to);
   }
->>>>>>> 1c0a03e (Feeds in case files, the ledger of particle mass)
+  const dem::TimeStepBound bound = particle_step_bound(spec);
   facts.add("particle step", "{:g} s, {:.0f} % of the bound {:.3g} s at impacts of {:g} m/s",
             spec.time.particle_step, 100 * spec.time.particle_step / bound.bound, bound.bound,
             spec.time.impact_speed);
