@@ -548,16 +548,16 @@ TEST(CaseErrors, Feeds) {
     EXPECT_TRUE(said.starts_with(message)) << said;
   };
   begins("particles.7.feed.mass_rate=1",
-         "c.yaml:23: particles.7.feed: mass_rate and rate are given; exactly one");
+         "c.yaml:27: particles.7.feed: mass_rate and rate are given; exactly one");
   begins("particles.7.count=5",
          "--set: particles.7.count: the rate of the feed says how many; only with fill");
   begins("particles.7.fixed=true",
          "--set: particles.7.fixed: particles of a feed move; only with fill or list");
   begins("particles.6.feed.disc.radius=30 mm",
-         "c.yaml:21: particles.6.feed.disc: it reaches out of the domain;");
+         "c.yaml:25: particles.6.feed.disc: it reaches out of the domain;");
   begins("particles.6.feed.to=5 ms",
          "--set: particles.6.feed.to: from 0.01 to 0.005 s is no time; later than from");
-  begins("particles.6.diameter=", "c.yaml:20: particles.6.diameter: missing; a feed needs a length");
+  begins("particles.6.diameter=", "c.yaml:24: particles.6.diameter: missing; a feed needs a length");
 }
 
 TEST(CaseErrors, RoundRegions) {

@@ -25,7 +25,7 @@ contacts:
 """
 STREAM = HEAD + """
 domain: {min: [0, 0, 0], max: ["20 mm", "20 mm", "60 mm"]}
-time: {end: "60 ms", gas_step: "1e-4 s", particle_step: "1e-5 s", impact_speed: "2 m/s"}
+time: {end: "60 ms", gas_step: "1e-4 s", particle_step: "2.5e-6 s", impact_speed: "2 m/s"}
 particles:
   - {material: glass, diameter: {normal: {mean: "2 mm", sd: "0.3 mm", min: "1 mm", max: "3 mm"}}, velocity: [0, 0, -1],
      feed: {disc: {centre: ["10 mm", "10 mm", "55 mm"], normal: [0, 0, 1], radius: "8 mm"}, mass_rate: "0.05 kg/s"}}
@@ -42,7 +42,7 @@ output:
 """
 BED = HEAD + """
 domain: {min: [0, 0, 0], max: ["9 mm", "9 mm", "30 mm"]}
-time: {end: "1 ms", gas_step: "1e-4 s", particle_step: "1e-5 s", settle: {until: quiet, at_most: "%s", speed: "5 mm/s"}}
+time: {end: "1 ms", gas_step: "1e-4 s", particle_step: "5e-6 s", settle: {until: quiet, at_most: "%s", speed: "5 mm/s"}}
 particles:
   - {material: glass, diameter: "2 mm", count: 60, fill: {box: {min: [0, 0, 0], max: ["9 mm", "9 mm", "20 mm"]}}}
 walls:
