@@ -13,7 +13,7 @@ namespace pellicle::dem {
 
 Engine::Engine(const EngineSetup& setup)
     : setup_(setup),
-      walls_(setup.walls, setup.domain.box),
+      walls_(setup.walls, setup.domain.box, setup.contacts.springs()),
       history_(setup.contacts.springs(), setup.contacts.cohesion.has_value()),
       flags_("dem::engine::flags") {
   if (!(setup.time_step > 0)) throw std::invalid_argument("the particle time step must be positive");
@@ -41,6 +41,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
     of_particles.at(static_cast<std::size_t>(material)) = true;
   require_pairs(setup_.materials, setup_.pairs, of_particles, of_walls);
   allocate(seeds.size());
+  walls_.forget();
   search_.clear();
   started_ = false;
   left_ = 0;

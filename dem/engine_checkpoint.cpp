@@ -42,11 +42,13 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/angular_acceleration", host_copy(particles_.angular_acceleration, n));
   file.write("dem/touching", host_copy(result_.touching, n));
   history_.save(file);
+  walls_.save(file);
 }
 
 void Engine::load(core::CheckpointReader& file) {
   const auto n = file.read_int64("dem/count");
   allocate(static_cast<std::size_t>(n));
+  walls_.forget();
   substeps_ = file.read_int64("dem/substeps");
   walls_since_ = file.read_int64("dem/walls_since");
   builds_ = file.read_int64("dem/list_builds");
@@ -77,6 +79,7 @@ void Engine::load(core::CheckpointReader& file) {
   read_array(file, "dem/angular_acceleration", particles_.angular_acceleration);
   read_array(file, "dem/touching", result_.touching);
   history_.load(file);
+  walls_.load(file);
   canonicalise();
 }
 

@@ -54,6 +54,7 @@ void Engine::add_particles(const std::vector<ParticleSeed>& seeds) {
     throw RunError("more particles than can be counted have entered");
   }
   history_.pack(list_);  // new particles have no contacts to remember
+  walls_.pack_history(particles_);
   if (total > particles_.position_radius.extent(0)) {
     reserve(std::max(total + total / 4, static_cast<std::size_t>(first) + least_growth));
   }

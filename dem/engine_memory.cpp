@@ -136,6 +136,8 @@ void Engine::reorder(const DeviceArray<std::int32_t>& order, Index count) {
   permute_array(result_.touching, order, count, work_);
   history_.pack(list_);
   history_.reorder(order, particles_.count, count);
+  walls_.pack_history(particles_);
+  walls_.reorder_history(order, count);
   particles_.count = count;
   list_valid_ = false;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dem/contact_loop.hpp"
+#include "dem/wall_history.hpp"
 #include "dem/wall_list.hpp"
 
 namespace pellicle::dem {
@@ -27,11 +28,17 @@ inline constexpr Index wall_blocks = std::is_same_v<Device, Host> ? 256 : 4096;
 /// Groups of blocks summed on the device before the host sees them, so that little crosses over.
 inline constexpr Index report_parts = 16;
 
-/// Adds the contacts with walls at this moment to force, torque and touching_new and carries the reports on; entry
-/// block × walls + wall of `report` is one block's of one wall.
-void add_wall_contacts(const ContactInput& input, const WallList& list, const WallGeometry& walls,
-                       const ContactOptions& options, const ContactResult& result,
-                       const DeviceArray<WallReport>& report);
+/// Everything that contacts with walls need of the walls; entry block × walls + wall of `report` is one block's of one wall.
+struct WallInput {
+  WallGeometry geometry;
+  WallList list;
+  WallSprings springs;
+  DeviceArray<WallReport> report;
+};
+
+/// Adds the contacts with walls at this moment to force, torque and touching_new and carries springs and reports on.
+void add_wall_contacts(const WallInput& walls, const ContactInput& input, const ContactOptions& options,
+                       const ContactResult& result);
 
 /// Reports of each wall over all blocks, in an order that does not depend on threads; clears `report`. `scratch` is
 /// report_parts × walls long.

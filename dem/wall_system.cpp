@@ -8,8 +8,9 @@
 
 namespace pellicle::dem {
 
-WallSystem::WallSystem(const std::vector<Wall>& walls, const Box& domain)
+WallSystem::WallSystem(const std::vector<Wall>& walls, const Box& domain, int springs)
     : geometry_(make_wall_geometry(walls)),
+      history_(walls.empty() ? 0 : springs),
       report_(make_array<WallReport>("dem::wall_system::report",
                                      static_cast<std::size_t>(wall_blocks) * walls.size())),
       report_scratch_(make_array<WallReport>("dem::wall_system::report_scratch",
@@ -73,7 +74,9 @@ bool WallSystem::list_outdated() const {
 }
 
 void WallSystem::build_list(const Particles& particles, const NeighbourList& neighbours, Real allowances) {
+  history_.pack(list_, particles.count);
   build_wall_list(particles, neighbours, allowances, geometry_, list_);
+  history_.unpack(list_);
   for (HostMotion& wall : motions_) {
     wall.at_list = pose_of(wall, time_);
     wall.time_at_list = time_;
@@ -82,7 +85,7 @@ void WallSystem::build_list(const Particles& particles, const NeighbourList& nei
 
 void WallSystem::add_contacts(const ContactInput& input, const ContactOptions& options,
                               const ContactResult& result) {
-  add_wall_contacts(input, list_, geometry_, options, result, report_);
+  add_wall_contacts({geometry_, list_, history_.rows(), report_}, input, options, result);
 }
 
 std::size_t WallSystem::bytes() const {

@@ -11,7 +11,8 @@ class WallSystem {
  public:
   WallSystem() = default;
   /// `domain` bounds the parts of unbounded walls that matter. Throws std::invalid_argument for too many triangles.
-  WallSystem(const std::vector<Wall>& walls, const Box& domain);
+  /// `springs`: how many each contact keeps.
+  WallSystem(const std::vector<Wall>& walls, const Box& domain, int springs = 0);
 
   /// How far walls may move between two searches follows the rule for particles: radii [m] of the smallest and largest
   /// one, time step in s.
@@ -24,6 +25,15 @@ class WallSystem {
   bool list_outdated() const;
   /// See build_wall_list; walls are where they were moved to last.
   void build_list(const Particles& particles, const NeighbourList& neighbours, Real allowances);
+
+  /// What contacts remember goes from list to list by itself; around a re-sort of memory, pack it, then follow.
+  void pack_history(const Particles& particles) { history_.pack(list_, particles.count); }
+  void reorder_history(const DeviceArray<std::int32_t>& order, Index count) {
+    history_.reorder(order, count);
+  }
+  void forget() { history_.clear(); }
+  void save(core::CheckpointWriter& file) const { history_.save(file); }
+  void load(const core::CheckpointReader& file) { history_.load(file); }
 
   void add_contacts(const ContactInput& input, const ContactOptions& options, const ContactResult& result);
   /// Reports of each wall since the last call.
@@ -49,6 +59,7 @@ class WallSystem {
 
   WallGeometry geometry_;
   WallList list_;
+  WallHistory history_;
   DeviceArray<WallReport> report_;
   DeviceArray<WallReport> report_scratch_;
   std::vector<HostMotion> motions_;

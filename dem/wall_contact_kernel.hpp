@@ -1,0 +1,159 @@
+// The kernel of wall contacts, instantiated in one file a law of friction: wall_contacts_*.cpp.
+#pragma once
+
+#include <type_traits>
+#include <variant>
+
+#include "dem/contact_force.hpp"
+#include "dem/wall_candidates.hpp"
+#include "dem/wall_contacts.hpp"
+
+namespace pellicle::dem {
+
+/// One block of the list a work item.
+template <class Laws>
+struct WallContactKernel {
+  static constexpr int springs = Laws::springs;
+
+  ContactInput in;
+  WallList list;
+  WallGeometry walls;
+  ContactResult out;
+  WallSprings history;
+  DeviceArray<WallReport> reports;
+  Laws laws;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index block) const {
+    const auto wall_count = static_cast<Index>(walls.body.extent(0));
+    for (Index w = 0; w < wall_count; ++w) reports(block * wall_count + w).touching = 0;
+    const std::int64_t count = list.count;
+    const auto begin = static_cast<Index>(block * count / wall_blocks);
+    const auto end = static_cast<Index>((block + 1) * count / wall_blocks);
+    for (Index k = begin; k < end; ++k) add_contacts(k, reports.data() + block * wall_count);
+  }
+
+  KOKKOS_INLINE_FUNCTION void add_contacts(Index k, WallReport* report) const {
+    const Index p = list.particle(k);
+    const PositionRadius self = in.particles.position_radius(p);
+    WallCandidates candidates;
+    const std::int32_t end = list.offset(k + 1);
+    for (std::int32_t slot = list.offset(k); slot < end; ++slot) {
+      const std::int32_t s = list.surface(slot);
+      const ClosestPoint at = walls.closest(s, self.position());
+      if (at.distance < self.radius) candidates.insert({at, s, walls.wall_of(s)});
+    }
+    if (candidates.count() == 0) {
+      if constexpr (Laws::springs > 0) history.memory(k).count = 0;
+      return;
+    }
+    if (candidates.crowded()) ++report[candidates[0].wall].crowded;
+    candidates.select(walls, self.radius);
+    const VelocitySpin motion = in.particles.velocity_spin(p);
+    const Real compliance = spin_compliance_of(out.touching(p), motion.inverse_mass, self.radius);
+    Vec3 force = out.force(p);
+    Vec3 torque = out.torque(p);
+    std::conditional_t<(springs > 0), SpringRow, NoSpringRow> row;
+    row.open(*this, k);
+    for (int i = 0; i < candidates.count(); ++i) {
+      ContactSprings spring = row.take(candidates[i]);
+      const ContactForce f =
+          contact(candidates[i], self, motion, compliance, spring, report[candidates[i].wall]);
+      row.put(candidates[i], i, spring);
+      force += f.force;
+      torque += f.torque + f.rolling_torque;
+    }
+    row.close(*this, k, candidates.count());
+    out.force(p) = force;
+    out.torque(p) = torque;
+    out.touching_new(p) += candidates.count();
+  }
+
+  /// The force of one wall on the particle, reported.
+  KOKKOS_INLINE_FUNCTION ContactForce contact(const WallCandidate& candidate, const PositionRadius& self,
+                                              const VelocitySpin& motion, Real compliance,
+                                              ContactSprings& spring, WallReport& report) const {
+    const ClosestPoint& at = candidate.at;
+    const WallBody& body = walls.body(candidate.wall);
+    const PairParameters& pair = in.table(motion.material * in.materials + body.material);
+    const Vec3& n = at.towards;
+    const Vec3 dv = motion.velocity() - walls.pose(candidate.wall).velocity_at(at.point, n);
+    const ContactState c{self.radius - at.distance, self.radius, 1 / motion.inverse_mass, dot(dv, n)};
+    // A wall that turns does not roll: the relative spin is that of the two bodies.
+    const Vec3 wall_spin = walls.pose(candidate.wall).spin;
+    const Vec3 relative_spin = motion.spin() - wall_spin;
+    const Vec3 mean_spin = 0.5 * (motion.spin() + wall_spin);
+    const ContactForce f = laws(c, pair, n, dv, at.distance * motion.spin(), at.distance, relative_spin,
+                                compliance, mean_spin, spring);
+    report.impulse += in.kick * f.force;
+    report.angular_impulse -= in.kick * (cross(at.point - body.torque_about, f.force) + f.rolling_torque);
+    ++report.touching;
+    report.largest_overlap = Kokkos::max(report.largest_overlap, c.overlap / self.radius);
+    report.largest_depth = Kokkos::max(report.largest_depth, c.overlap);
+    report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
+    return f;
+  }
+
+  /// The springs of one particle's contacts: those of the substep before, and the new ones.
+  struct SpringRow {
+    WallMemory before{}, after{};
+    Vec3 old_spring[most_wall_contacts * (springs > 0 ? springs : 1)];
+    Vec3 new_spring[most_wall_contacts * (springs > 0 ? springs : 1)];
+    unsigned taken = 0;
+
+    KOKKOS_INLINE_FUNCTION void open(const WallContactKernel& kernel, Index k) {
+      before = kernel.history.memory(k);
+      const Vec3* const stored = kernel.history.spring.data() + k * most_wall_contacts * springs;
+      for (int e = 0; e < before.count * springs; ++e) old_spring[e] = stored[e];
+    }
+    KOKKOS_INLINE_FUNCTION ContactSprings take(const WallCandidate& contact) {
+      const int entry = before.find(contact.wall, contact.at.towards, taken);
+      ContactSprings spring;
+      if (entry < 0) return spring;  // a contact that has just begun
+      taken |= 1U << entry;
+      if constexpr (Laws::tangential_spring >= 0)
+        spring.tangential = old_spring[entry * springs + Laws::tangential_spring];
+      if constexpr (Laws::rolling_spring >= 0)
+        spring.rolling = old_spring[entry * springs + Laws::rolling_spring];
+      return spring;
+    }
+    KOKKOS_INLINE_FUNCTION void put(const WallCandidate& contact, int i, const ContactSprings& spring) {
+      after.wall[i] = contact.wall;
+      after.towards[i] = contact.at.towards;
+      if constexpr (Laws::tangential_spring >= 0)
+        new_spring[i * springs + Laws::tangential_spring] = spring.tangential;
+      if constexpr (Laws::rolling_spring >= 0)
+        new_spring[i * springs + Laws::rolling_spring] = spring.rolling;
+    }
+    KOKKOS_INLINE_FUNCTION void close(const WallContactKernel& kernel, Index k, int count) {
+      after.count = count;
+      kernel.history.memory(k) = after;
+      Vec3* const stored = kernel.history.spring.data() + k * most_wall_contacts * springs;
+      for (int e = 0; e < count * springs; ++e) stored[e] = new_spring[e];
+    }
+  };
+
+  /// The same for laws that do not remember.
+  struct NoSpringRow {
+    KOKKOS_INLINE_FUNCTION void open(const WallContactKernel&, Index) const {}
+    KOKKOS_INLINE_FUNCTION ContactSprings take(const WallCandidate&) const { return {}; }
+    KOKKOS_INLINE_FUNCTION void put(const WallCandidate&, int, const ContactSprings&) const {}
+    KOKKOS_INLINE_FUNCTION void close(const WallContactKernel&, Index, int) const {}
+  };
+};
+
+/// The same for each law of friction, compiled in a file of its own.
+template <class Tangential>
+void run_wall_contacts(const WallInput& walls, const ContactInput& input, const Tangential& tangential,
+                       const ContactOptions& options, const ContactResult& result) {
+  std::visit(
+      [&](const auto& normal, const auto& rolling) {
+        using Laws = ContactLaws<std::decay_t<decltype(normal)>, Tangential, std::decay_t<decltype(rolling)>>;
+        Kokkos::parallel_for("dem::wall_contact_kernel::block",
+                             Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>>(0, wall_blocks),
+                             WallContactKernel<Laws>{input, walls.list, walls.geometry, result, walls.springs,
+                                                     walls.report, Laws{normal, tangential, rolling}});
+      },
+      options.normal, options.rolling);
+}
+
+}  // namespace pellicle::dem

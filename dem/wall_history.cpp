@@ -1,0 +1,113 @@
+#include "dem/wall_history.hpp"
+
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "dem/engine_arrays.hpp"
+
+namespace pellicle::dem {
+namespace {
+
+void note_rows(const WallList& list, const DeviceArray<WallMemory>& memory,
+               const DeviceArray<std::int32_t>& row) {
+  Kokkos::parallel_for(
+      "dem::wall_history::note_rows", DeviceRange(0, list.count), KOKKOS_LAMBDA(const Index k) {
+        if (memory(k).count > 0) row(list.particle(k)) = k;
+      });
+}
+
+void fill_rows(const WallList& list, const DeviceArray<std::int32_t>& row, Index known, int springs,
+               const WallSprings& from, const WallSprings& to) {
+  Kokkos::parallel_for(
+      "dem::wall_history::fill_rows", DeviceRange(0, list.count), KOKKOS_LAMBDA(const Index k) {
+        const Index p = list.particle(k);
+        const std::int32_t old = p < known ? row(p) : -1;
+        if (old < 0) {
+          to.memory(k).count = 0;
+          return;
+        }
+        to.memory(k) = from.memory(old);
+        const int entries = most_wall_contacts * springs;
+        for (int e = 0; e < to.memory(k).count * springs; ++e)
+          to.spring(k * entries + e) = from.spring(old * entries + e);
+      });
+}
+
+}  // namespace
+
+void WallHistory::pack(const WallList& list, Index particles) {
+  if (springs_ == 0 || place_ != Place::rows) return;
+  ensure_size(row_, static_cast<std::size_t>(particles), "dem::wall_history::row");
+  Kokkos::deep_copy(row_, -1);
+  note_rows(list, rows_.memory, row_);
+  std::swap(rows_, packed_);
+  packed_rows_ = list.count;
+  particles_ = particles;
+  place_ = Place::packed;
+}
+
+void WallHistory::reorder(const DeviceArray<std::int32_t>& order, Index count) {
+  if (place_ != Place::packed) return;
+  ensure_size(row_next_, static_cast<std::size_t>(count), "dem::wall_history::row_next");
+  const auto row = row_;
+  const auto next = row_next_;
+  const Index known = particles_;
+  Kokkos::parallel_for(
+      "dem::wall_history::reorder", DeviceRange(0, count),
+      KOKKOS_LAMBDA(const Index p) { next(p) = order(p) < known ? row(order(p)) : -1; });
+  std::swap(row_, row_next_);
+  particles_ = count;
+}
+
+void WallHistory::unpack(const WallList& list) {
+  if (springs_ == 0) return;
+  const auto rows = static_cast<std::size_t>(list.count);
+  ensure_size(rows_.memory, rows, "dem::wall_history::memory");
+  ensure_size(rows_.spring, rows * static_cast<std::size_t>(most_wall_contacts * springs_),
+              "dem::wall_history::spring");
+  fill_rows(list, row_, place_ == Place::packed ? particles_ : 0, springs_, packed_, rows_);
+  place_ = Place::rows;
+}
+
+void WallHistory::save(core::CheckpointWriter& file) const {
+  if (springs_ == 0) return;
+  if (place_ == Place::rows) throw std::logic_error("springs are saved before they are packed");
+  const bool any = place_ == Place::packed;
+  file.write("dem/wall_history/rows", std::int64_t{any ? packed_rows_ : 0});
+  file.write("dem/wall_history/particles", std::int64_t{any ? particles_ : 0});
+  if (!any) return;
+  file.write("dem/wall_history/row", host_copy(row_, particles_));
+  const auto memory = host_copy(packed_.memory, packed_rows_);
+  const auto spring = host_copy(packed_.spring, packed_rows_ * most_wall_contacts * springs_);
+  // Springs of contacts that are not there hold what memory held.
+  std::vector<Vec3> meant(spring.data(), spring.data() + spring.size());
+  for (Index r = 0; r < packed_rows_; ++r) {
+    for (Index e = memory(r).count * springs_; e < most_wall_contacts * springs_; ++e)
+      meant[static_cast<std::size_t>(r * most_wall_contacts * springs_ + e)] = Vec3{};
+  }
+  file.write("dem/wall_history/memory", memory);
+  file.write("dem/wall_history/spring", meant);
+}
+
+void WallHistory::load(const core::CheckpointReader& file) {
+  clear();
+  if (springs_ == 0) return;
+  packed_rows_ = static_cast<Index>(file.read_int64("dem/wall_history/rows"));
+  particles_ = static_cast<Index>(file.read_int64("dem/wall_history/particles"));
+  if (particles_ == 0) return;
+  const auto fill = [&file](auto& array, const char* name, Index size, const char* label) {
+    ensure_size(array, static_cast<std::size_t>(size), label);
+    const auto part = Kokkos::subview(array, std::pair<Index, Index>(0, size));
+    const auto host = Kokkos::create_mirror_view(part);
+    file.read_into(name, host);
+    Kokkos::deep_copy(part, host);
+  };
+  fill(row_, "dem/wall_history/row", particles_, "dem::wall_history::row_loaded");
+  fill(packed_.memory, "dem/wall_history/memory", packed_rows_, "dem::wall_history::memory_loaded");
+  fill(packed_.spring, "dem/wall_history/spring", packed_rows_ * most_wall_contacts * springs_,
+       "dem::wall_history::spring_loaded");
+  place_ = Place::packed;
+}
+
+}  // namespace pellicle::dem
