@@ -14,7 +14,7 @@ AGITATION = 1.0  # root mean square speed of the agitated beads [m/s]
 MIXING = 2000  # steps without loss that turn a lattice into a gas: about thirty collisions a bead
 
 # Stages of settling: restitution, relaxation time of a drag [s] (0: none), step [s], steps.
-STAGES = ((0.5, 0.05, 2e-5, 7000), (0.97, 0.01, 1e-5, 6000), (0.97, 0, 1e-5, 3000))
+STAGES = ((0.5, 0.05, 2e-5, 7000), (0.97, 0.01, 1e-5, 12000), (0.97, 0, 1e-5, 3000))
 LAWS = {"packed": "viscous_coulomb", "packed_history": "mindlin"}
 
 
