@@ -29,7 +29,9 @@ struct WallContactKernel {
     const std::int64_t count = list.count;
     const auto begin = static_cast<Index>(block * count / wall_blocks);
     const auto end = static_cast<Index>((block + 1) * count / wall_blocks);
-    for (Index k = begin; k < end; ++k) add_contacts(k, reports.data() + block * wall_count);
+    for (Index k = begin; k < end; ++k)
+      add_contacts(k,
+                   reports.data() + static_cast<std::size_t>(block) * static_cast<std::size_t>(wall_count));
   }
 
   KOKKOS_INLINE_FUNCTION void add_contacts(Index k, WallReport* report) const {

@@ -96,7 +96,8 @@ void visit_cells(const MeshGrid& grid, const TriangleShape& triangle, const Visi
   for (Index k = range.low.z; k <= range.high.z; ++k) {
     for (Index j = range.low.y; j <= range.high.y; ++j) {
       for (Index i = range.low.x; i <= range.high.x; ++i) {
-        visit(static_cast<std::size_t>(i + grid.cells.x * (j + grid.cells.y * k)));
+        const Index cell = i + grid.cells.x * (j + grid.cells.y * k);
+        visit(static_cast<std::size_t>(cell));
       }
     }
   }

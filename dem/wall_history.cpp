@@ -83,8 +83,10 @@ void WallHistory::save(core::CheckpointWriter& file) const {
   // Springs of contacts that are not there hold what memory held.
   std::vector<Vec3> meant(spring.data(), spring.data() + spring.size());
   for (Index r = 0; r < packed_rows_; ++r) {
-    for (Index e = memory(r).count * springs_; e < most_wall_contacts * springs_; ++e)
-      meant[static_cast<std::size_t>(r * most_wall_contacts * springs_ + e)] = Vec3{};
+    for (Index e = memory(r).count * springs_; e < most_wall_contacts * springs_; ++e) {
+      const Index entry = r * most_wall_contacts * springs_ + e;
+      meant[static_cast<std::size_t>(entry)] = Vec3{};
+    }
   }
   file.write("dem/wall_history/memory", memory);
   file.write("dem/wall_history/spring", meant);

@@ -68,7 +68,7 @@ inline void add_box_walls(dem::EngineSetup& setup) {
       wall.point = upper == 1 ? setup.domain.box.max : setup.domain.box.min;
       wall.normal[axis] = upper == 1 ? -1 : 1;
       wall.material = 1;
-      setup.walls.push_back(wall);
+      setup.walls.emplace_back(wall);
     }
   }
 }

@@ -193,8 +193,9 @@ TEST(ContactHistory, SurvivesParticlesThatLeave) {
     auto seeds = make_chains();
     const std::size_t chains = seeds.size();
     for (int k = 0; visitors && k < 120; ++k) {
+      const int row = k / 40;
       seeds.push_back(
-          {{0.004 * (k % 40) + 0.02, 0.199 - 0.0025 * (k / 40), 0.17}, {0, 60, 0}, {}, 0.0005, 0, false});
+          {{0.004 * (k % 40) + 0.02, 0.199 - 0.0025 * row, 0.17}, {0, 60, 0}, {}, 0.0005, 0, false});
     }
     engine.set_particles(seeds);
     for (int block = 0; block < 20; ++block) {
