@@ -140,7 +140,8 @@ void NeighbourSearch::find_order(const Particles& particles, Real time_step, Nei
   // As many as there may ever be: their number changes from build to build.
   const Index cells = most_cells(particles.count) + (grid_.levels - 1) * most_cells(0);
   ensure_size(cell_start_, static_cast<std::size_t>(cells) + 1, "dem::neighbour_list::cell_start");
-  ensure_size(order_, n, "dem::neighbour_list::order");
+  // The search reads whole registers, beyond the last particle too.
+  ensure_size(order_, sorted_stride(n), "dem::neighbour_list::order");
   sort_into_cells(grid_, particles, cell_start_, order_);
 }
 

@@ -136,7 +136,7 @@ struct FindRowsInLanes {
           }
           const Real8 r = lanes::load<Real8>(reach + slot) + self.radius;
           const Int8 q = lanes::load<Int8>(order + slot);
-          const Mask8 present = to - slot >= width ? 0xff : static_cast<Mask8>((1 << (to - slot)) - 1);
+          const auto present = static_cast<Mask8>(to - slot >= width ? 0xff : (1 << (to - slot)) - 1);
           const Mask8 taken =
               lanes::less(dx * dx + dy * dy + dz * dz, r * r) & lanes::outside(q, first, p) & present;
           lanes::pack(taken, q, out + (n < last ? n : last));
