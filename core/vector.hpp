@@ -77,6 +77,14 @@ KOKKOS_INLINE_FUNCTION T norm(const Vector3<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
+/// A unit vector at right angles to a unit vector.
+template <class T>
+KOKKOS_INLINE_FUNCTION Vector3<T> perpendicular_to(const Vector3<T>& a) {
+  const Vector3<T> other = a.x < T(0.6) && a.x > T(-0.6) ? Vector3<T>{1, 0, 0} : Vector3<T>{0, 1, 0};
+  const Vector3<T> p = cross(a, other);
+  return (1 / norm(p)) * p;
+}
+
 /// The same vector in another type.
 template <class To, class From>
 KOKKOS_INLINE_FUNCTION constexpr Vector3<To> convert(const Vector3<From>& a) {

@@ -49,10 +49,7 @@ struct FixedCoefficientForce {
     return drag + g.pressure_force + volume(p) * buoyancy_per_volume;
   }
 
-  KOKKOS_INLINE_FUNCTION Real volume(Index p) const {
-    const Real r = position_radius(p).radius;
-    return 4 * Kokkos::numbers::pi_v<Real> / 3 * r * r * r;
-  }
+  KOKKOS_INLINE_FUNCTION Real volume(Index p) const { return dem::sphere_volume(position_radius(p).radius); }
 };
 
 /// Fluid force whose momentum exchange coefficient follows the particle's velocity.

@@ -35,7 +35,7 @@ struct ComputeCoefficients {
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
     const Real radius = particles.position_radius(p).radius;
-    const Real volume = 4 * Kokkos::numbers::pi_v<Real> / 3 * radius * radius * radius;
+    const Real volume = dem::sphere_volume(radius);
     SampledGas g;
     g.velocity = gas.sample(p, gas_velocity);
     g.void_fraction = transfer.sample(p, void_fraction);
@@ -66,7 +66,7 @@ struct ComputeLoads {
   KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
     const Real radius = position_radius(p).radius;
     CellLoad made;
-    made.solids = 4 * Kokkos::numbers::pi_v<Real> / 3 * radius * radius * radius;
+    made.solids = dem::sphere_volume(radius);
     if (steps_per_second > 0) {
       const SampledGas g = sampled(p);
       const Received r = received(p);

@@ -6,7 +6,7 @@
 
 namespace pellicle::dem {
 
-/// How far apart two particles, or a particle and a wall, can be and still be bridged, as a share for each particle: the
+/// How far apart two particles can be and still be bridged, as a share for each particle: the
 /// gap at rupture is the sum of the two, exactly, (1 + θ/2)(V^⅓/2 + V^⅔/(20 R)) [m].
 Real bridge_reach(const Willett& law, Real radius);
 

@@ -84,10 +84,7 @@ struct ParticleContactKernel {
       sum.torque += (0.5 * (1 + f.skew)) * cross(d, f.friction) + f.rolling_torque;
       ++contacts;
       ++report.touching;
-      report.largest_overlap =
-          Kokkos::max(report.largest_overlap, f.overlap / Kokkos::min(a.radius, b.radius));
-      report.largest_depth = Kokkos::max(report.largest_depth, f.overlap);
-      report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, f.approach_speed);
+      report.include({f.overlap / Kokkos::min(a.radius, b.radius), f.overlap, f.approach_speed});
     }
     if (ma.inverse_mass == 0) report.support_impulse += in.kick * sum.force;
     out.force(p) = sum.force;

@@ -10,15 +10,25 @@
 
 namespace pellicle::dem {
 
-/// What one block of particles reports about contacts with particles: extremes and impulses since the report was last cleared,
-/// counts of the last substep.
-struct BlockReport {
+/// The extremes of some contacts.
+struct ContactExtremes {
   Real largest_overlap = 0;         ///< largest δ/R of the smaller particle [-]
   Real largest_depth = 0;           ///< largest δ [m]
   Real largest_approach_speed = 0;  ///< [m/s]
-  Vec3 support_impulse{};           ///< that contacts gave to fixed particles [N s]
-  std::int64_t touching = 0;        ///< touching partners, each pair counted at both particles
-  std::int64_t bridges = 0;         ///< liquid bridges, each counted at both particles
+
+  KOKKOS_INLINE_FUNCTION void include(const ContactExtremes& other) {
+    largest_overlap = Kokkos::max(largest_overlap, other.largest_overlap);
+    largest_depth = Kokkos::max(largest_depth, other.largest_depth);
+    largest_approach_speed = Kokkos::max(largest_approach_speed, other.largest_approach_speed);
+  }
+};
+
+/// What one block of particles reports about contacts with particles: extremes and impulses since the report was last cleared,
+/// counts of the last substep.
+struct BlockReport : ContactExtremes {
+  Vec3 support_impulse{};     ///< that contacts gave to fixed particles [N s]
+  std::int64_t touching = 0;  ///< touching partners, each pair counted at both particles
+  std::int64_t bridges = 0;   ///< liquid bridges, each counted at both particles
 };
 
 /// Extremes and impulses go on, counts start anew.

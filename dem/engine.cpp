@@ -1,7 +1,6 @@
 #include "dem/engine.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -48,36 +47,14 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   entered_mass_ = left_mass_ = 0;
   entered_momentum_ = left_momentum_ = gravity_impulse_ = Vec3{};
   volume_time_ = 0;
-  next_id_ = static_cast<std::int32_t>(seeds.size());
+  next_id_ = 0;
   one_particle_material_ = true;
   take_stock(seeds);
   if (largest_radius_ == 0) return;
   search_.emplace_back(setup_.domain, skin(), smallest_radius_, largest_radius_);
   walls_.set_allowances(setup_.skin, setup_.time_step, smallest_radius_, largest_radius_);
   if (seeds.empty()) return;
-  const auto place = Kokkos::create_mirror_view(particles_.position_radius);
-  const auto motion = Kokkos::create_mirror_view(particles_.velocity_spin);
-  const auto mass = Kokkos::create_mirror_view(particles_.mass);
-  for (std::size_t p = 0; p < seeds.size(); ++p) {
-    const ParticleSeed& s = seeds[p];
-    const Real density = setup_.materials.at(static_cast<std::size_t>(s.material)).density;
-    mass(p) = density * (4.0 / 3.0) * std::numbers::pi * s.radius * s.radius * s.radius;
-    place(p) = {s.position.x, s.position.y, s.position.z, s.radius};
-    motion(p) = {s.velocity.x,
-                 s.velocity.y,
-                 s.velocity.z,
-                 s.spin.x,
-                 s.spin.y,
-                 s.spin.z,
-                 s.fixed ? 0 : 1 / mass(p),
-                 s.material,
-                 static_cast<std::int32_t>(p)};
-  }
-  Kokkos::deep_copy(particles_.position_radius, place);
-  Kokkos::deep_copy(particles_.velocity_spin, motion);
-  Kokkos::deep_copy(particles_.mass, mass);
-  one_particle_material_ =
-      std::all_of(seeds.begin(), seeds.end(), [](const ParticleSeed& s) { return s.material == 0; });
+  put_particles(seeds, 0);
   const ParticleTotals totals = compute_totals();
   moving_mass_ = totals.mass;
   moving_volume_ = totals.volume;
@@ -165,9 +142,7 @@ ContactReport Engine::collect_report() {
   // Blocks beyond the present ones carry what they saw before particles left.
   for (Index b = 0; b < static_cast<Index>(host.extent(0)); ++b) {
     const BlockReport& r = host(b);
-    sum.largest_overlap = std::max(sum.largest_overlap, r.largest_overlap);
-    sum.largest_depth = std::max(sum.largest_depth, r.largest_depth);
-    sum.largest_approach_speed = std::max(sum.largest_approach_speed, r.largest_approach_speed);
+    sum.include(r);
     sum.support_impulse += r.support_impulse;
     if (b < blocks) sum.touching_pairs += r.touching;
     if (b < blocks) sum.bridges += r.bridges;
@@ -176,9 +151,7 @@ ContactReport Engine::collect_report() {
   sum.bridges /= 2;
   Kokkos::deep_copy(result_.report, BlockReport{});
   for (const WallReport& r : walls_.collect_reports()) {
-    sum.largest_overlap = std::max(sum.largest_overlap, r.largest_overlap);
-    sum.largest_depth = std::max(sum.largest_depth, r.largest_depth);
-    sum.largest_approach_speed = std::max(sum.largest_approach_speed, r.largest_approach_speed);
+    sum.include(r);
     sum.wall_impulse += r.impulse;
     sum.touching_walls += r.touching;
     sum.crowded_walls += r.crowded;

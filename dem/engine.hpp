@@ -28,8 +28,8 @@ struct ParticleSeed {
   bool fixed = false;
 };
 
-/// Particles that will be added while the engine runs (see Engine::add_particles): they shape the cell grid, which must
-/// be the same after a restart, and tell which materials can meet.
+/// Particles that will be added while the engine runs (see Engine::add_particles): their radii and number
+/// size the search for partners, which must be the same after a restart, and tell which materials can meet.
 struct LaterParticles {
   std::vector<int> materials;
   Real smallest_radius = 0, largest_radius = 0;  ///< [m]
@@ -57,12 +57,9 @@ struct WallLoad {
 };
 
 /// Contacts since the last call of `collect_report`, and how many touch now.
-struct ContactReport {
-  Real largest_overlap = 0;         ///< δ/R of the smaller particle [-]
-  Real largest_depth = 0;           ///< δ [m]
-  Real largest_approach_speed = 0;  ///< [m/s]
-  Vec3 wall_impulse{};              ///< walls to moving particles [N s]
-  Vec3 support_impulse{};           ///< contacts to fixed particles [N s]
+struct ContactReport : ContactExtremes {
+  Vec3 wall_impulse{};     ///< walls to moving particles [N s]
+  Vec3 support_impulse{};  ///< contacts to fixed particles [N s]
   std::int64_t touching_pairs = 0;
   std::int64_t touching_walls = 0;
   std::int64_t bridges = 0;        ///< between particles
@@ -166,6 +163,9 @@ class Engine {
   void reorder(const DeviceArray<std::int32_t>& order, Index count);
   void remove_left();
   void take_stock(const std::vector<ParticleSeed>& seeds);
+  Real mass_of(const ParticleSeed& seed) const;
+  /// Writes seeds to the arrays from entry `first` on, with the next ids.
+  void put_particles(const std::vector<ParticleSeed>& seeds, Index first);
   [[noreturn]] void stop_for_overlap(Real overlap) const;
 
   EngineSetup setup_;
@@ -194,7 +194,7 @@ class Engine {
   Vec3 gravity_impulse_{};
   Real volume_time_ = 0;
   Real moving_mass_ = 0, moving_volume_ = 0;  // [kg], [m³], of the particles present
-  // Of the particles at the start: they shape the cell grid, which must be the same after a restart.
+  // Of the particles at the start: they size the search for partners, which must be the same after a restart.
   Real smallest_radius_ = 0, largest_radius_ = 0;  // [m]
   std::int64_t outer_steps_since_sort_ = 0;
   std::int64_t steps_since_build_ = 0;

@@ -1,5 +1,4 @@
 // Particles that enter an engine while it runs.
-#include <numbers>
 #include <stdexcept>
 
 #include "core/error.hpp"
@@ -29,14 +28,37 @@ void put(const DeviceArray<T>& array, Index first, const std::vector<T>& values)
 
 }  // namespace
 
+Real Engine::mass_of(const ParticleSeed& seed) const {
+  return setup_.materials.at(static_cast<std::size_t>(seed.material)).density * sphere_volume(seed.radius);
+}
+
+void Engine::put_particles(const std::vector<ParticleSeed>& seeds, Index first) {
+  std::vector<PositionRadius> place;
+  std::vector<VelocitySpin> motion;
+  std::vector<Real> mass;
+  for (const ParticleSeed& s : seeds) {
+    mass.push_back(mass_of(s));
+    place.push_back({s.position.x, s.position.y, s.position.z, s.radius});
+    motion.push_back({s.velocity.x, s.velocity.y, s.velocity.z, s.spin.x, s.spin.y, s.spin.z,
+                      s.fixed ? 0 : 1 / mass.back(), s.material, next_id_++});
+    one_particle_material_ = one_particle_material_ && s.material == 0;
+  }
+  put(particles_.position_radius, first, place);
+  put(particles_.velocity_spin, first, motion);
+  put(particles_.mass, first, mass);
+}
+
 void Engine::reserve(std::size_t capacity) {
   if (capacity <= particles_.position_radius.extent(0)) return;
   const Particles before = particles_;
   const DeviceArray<std::int32_t> touching = result_.touching;
+  const DeviceArray<BlockReport> report = result_.report;
   const ContactHistory history = history_;
   allocate(capacity);
   particles_.count = before.count;
   history_ = history;
+  // What contacts have reported and nobody has collected yet.
+  copy_first(result_.report, report, static_cast<Index>(report.extent(0)));
   if (before.count == 0) return;
   copy_first(particles_.position_radius, before.position_radius, before.count);
   copy_first(particles_.velocity_spin, before.velocity_spin, before.count);
@@ -58,25 +80,14 @@ void Engine::add_particles(const std::vector<ParticleSeed>& seeds) {
   if (total > particles_.position_radius.extent(0)) {
     reserve(std::max(total + total / 4, static_cast<std::size_t>(first) + least_growth));
   }
-  std::vector<PositionRadius> place;
-  std::vector<VelocitySpin> motion;
-  std::vector<Real> mass;
   // The velocity is that at the time of the position; the half-step velocity behind it is that of free flight.
   const Vec3 free_flight = round_to_single(started_ ? setup_.gravity : Vec3{});
   for (const ParticleSeed& s : seeds) {
-    const Real density = setup_.materials.at(static_cast<std::size_t>(s.material)).density;
-    mass.push_back(density * (4.0 / 3.0) * std::numbers::pi * s.radius * s.radius * s.radius);
-    place.push_back({s.position.x, s.position.y, s.position.z, s.radius});
-    motion.push_back({s.velocity.x, s.velocity.y, s.velocity.z, s.spin.x, s.spin.y, s.spin.z,
-                      s.fixed ? 0 : 1 / mass.back(), s.material, next_id_++});
-    one_particle_material_ = one_particle_material_ && s.material == 0;
     if (s.fixed) continue;
-    entered_mass_ += mass.back();
-    entered_momentum_ += mass.back() * (s.velocity - (0.5 * setup_.time_step) * free_flight);
+    entered_mass_ += mass_of(s);
+    entered_momentum_ += mass_of(s) * (s.velocity - (0.5 * setup_.time_step) * free_flight);
   }
-  put(particles_.position_radius, first, place);
-  put(particles_.velocity_spin, first, motion);
-  put(particles_.mass, first, mass);
+  put_particles(seeds, first);
   put(particles_.acceleration, first, std::vector<Vec3f>(seeds.size(), convert<float>(free_flight)));
   put(particles_.angular_acceleration, first, std::vector<Vec3f>(seeds.size()));
   put(result_.touching, first, std::vector<std::int32_t>(seeds.size()));

@@ -30,7 +30,7 @@ void sum_blocks(const Particles& particles, const Vec3& gravity, Real half_step,
           const Real inertia = 0.4 * mass * place.radius * place.radius;
           const Vec3 v = motion.velocity();
           t.mass += mass;
-          t.volume += 4.0 / 3.0 * Kokkos::numbers::pi * place.radius * place.radius * place.radius;
+          t.volume += sphere_volume(place.radius);
           t.moment += mass * place.z;
           t.kinetic_energy += 0.5 * mass * norm_squared(v) + 0.5 * inertia * norm_squared(motion.spin());
           t.potential_energy -= mass * dot(gravity, place.position());

@@ -6,21 +6,13 @@
 
 #include "core/random.hpp"
 #include "dem/engine_arrays.hpp"
+#include "dem/particles.hpp"
 
 namespace pellicle::dem {
 namespace {
 
 /// Random places that a particle tries in an outer step before it waits for the next.
 constexpr std::uint32_t attempts = 200;
-
-Real sphere_volume(Real diameter) { return std::numbers::pi / 6 * diameter * diameter * diameter; }
-
-/// A unit vector at right angles to another.
-Vec3 across(const Vec3& normal) {
-  const Vec3 other = std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 made = cross(normal, other);
-  return (1 / norm(made)) * made;
-}
 
 /// Indices of the particles that reach into a box around `centre`, in the order of memory.
 Index find_near(const Particles& particles, const Domain& domain, const Vec3& centre, const Vec3& half,
@@ -59,7 +51,7 @@ Real Feed::largest_radius() const {
 }
 
 std::int64_t Feed::expected_particles() const {
-  const Real volume = sizes_ ? sizes_->mean_volume() : sphere_volume(std::get<Real>(setup_.diameter));
+  const Real volume = sizes_ ? sizes_->mean_volume() : sphere_volume(0.5 * std::get<Real>(setup_.diameter));
   const Real each = setup_.by_count ? 1 : setup_.density * volume;
   return static_cast<std::int64_t>(std::min(1e9, due(setup_.to) / each));
 }
@@ -70,7 +62,7 @@ Real Feed::next_diameter() const {
 }
 
 Real Feed::amount(Real diameter) const {
-  return setup_.by_count ? 1 : setup_.density * sphere_volume(diameter);
+  return setup_.by_count ? 1 : setup_.density * sphere_volume(0.5 * diameter);
 }
 
 Real Feed::due(Real time) const {
@@ -88,18 +80,8 @@ Real Feed::waiting(Real time) const {
 
 Box Feed::reach() const {
   const Real radius = largest_radius();
-  Box box;
-  if (const auto* given = std::get_if<Box>(&setup_.region)) {
-    box = *given;
-  } else {
-    const auto& disc = std::get<DiscRegion>(setup_.region);
-    box = {disc.centre, disc.centre};
-    for (int a = 0; a < 3; ++a) {
-      const Real out = disc.radius * std::sqrt(std::max(0.0, 1 - disc.normal[a] * disc.normal[a]));
-      box.min[a] -= out;
-      box.max[a] += out;
-    }
-  }
+  const auto* const disc = std::get_if<DiscRegion>(&setup_.region);
+  Box box = disc != nullptr ? region_bounds(*disc) : std::get<Box>(setup_.region);
   for (int a = 0; a < 3; ++a) {
     box.min[a] -= radius;
     box.max[a] += radius;
@@ -120,7 +102,7 @@ Vec3 Feed::place(Real radius, std::int64_t step, std::uint32_t attempt) const {
     return x;
   }
   const auto& disc = std::get<DiscRegion>(setup_.region);
-  const Vec3 first = across(disc.normal);
+  const Vec3 first = perpendicular_to(disc.normal);
   const Vec3 second = cross(disc.normal, first);
   const Real out = std::max(Real{0}, disc.radius - radius) * std::sqrt(share.x);
   const Real angle = 2 * std::numbers::pi * share.y;
@@ -150,7 +132,7 @@ std::vector<ParticleSeed> Feed::draw(Real time, std::int64_t step, const std::ve
     entering.push_back(particle);
     ++fed_;
     amount_ += amount(diameter);
-    mass_ += setup_.density * sphere_volume(diameter);
+    mass_ += setup_.density * sphere_volume(0.5 * diameter);
   }
   return entering;
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "core/random.hpp"
 #include "dem/fill_relaxation.hpp"
+#include "dem/particles.hpp"
 
 namespace pellicle::dem {
 namespace {
@@ -248,7 +248,7 @@ std::vector<Vec3> fill_region(const FillRegion& region, FillPattern pattern, con
   if (pattern == FillPattern::lattice) return fill_lattice(room, box, radii, largest, grid);
   if (pattern == FillPattern::hexagonal) return fill_hexagonal(room, box, radii, largest, grid);
   Real volume = 0;
-  for (const Real r : radii) volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  for (const Real r : radii) volume += sphere_volume(r);
   std::vector<Vec3> some;
   if (volume <= one_by_one_limit * region_volume(region)) {
     OverlapGrid filling = grid;

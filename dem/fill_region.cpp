@@ -9,13 +9,6 @@ namespace {
 
 constexpr Real fit_tolerance = 1e-9;  // of a radius
 
-/// Any unit vector at right angles to a unit vector.
-Vec3 across(const Vec3& axis) {
-  const Vec3 other = std::abs(axis.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 made = cross(axis, other);
-  return (1 / norm(made)) * made;
-}
-
 /// Box around a disc.
 void include_disc(Box& box, const Vec3& centre, const Vec3& axis, Real radius) {
   for (int a = 0; a < 3; ++a) {
@@ -61,6 +54,12 @@ Box region_bounds(const FillRegion& region) {
   Box box{ends.from, ends.from};
   include_disc(box, ends.from, axis, ends.from_radius);
   include_disc(box, ends.to, axis, ends.to_radius);
+  return box;
+}
+
+Box region_bounds(const DiscRegion& disc) {
+  Box box{disc.centre, disc.centre};
+  include_disc(box, disc.centre, disc.normal, disc.radius);
   return box;
 }
 
@@ -120,7 +119,7 @@ bool Room::bring_inside(Vec3& centre, Real radius) const {
   const Real least = inner_ > 0 ? std::min(most, inner_ + radius) : 0;
   const Real allowed = std::clamp(out, least, most);
   if (along == given && allowed == out) return true;
-  const Vec3 direction = out > 0 ? (1 / out) * radial : across(axis_);
+  const Vec3 direction = out > 0 ? (1 / out) * radial : perpendicular_to(axis_);
   centre = from_ + along * axis_ + allowed * direction;
   return true;
 }

@@ -45,6 +45,7 @@ Real region_volume(const FillRegion& region);
 
 /// Smallest box around a region.
 Box region_bounds(const FillRegion& region);
+Box region_bounds(const DiscRegion& disc);
 
 /// Where the centres of spheres can be that lie wholly inside a region.
 class Room {

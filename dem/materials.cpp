@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/particles.hpp"
+
 namespace pellicle::dem {
 namespace {
 
@@ -36,9 +38,7 @@ Real effective_shear_modulus(const Material& a, const Material& b) {
   return compliance > 0 ? 1 / compliance : 0;
 }
 
-Real sphere_mass(const Material& material, Real radius) {
-  return material.density * 4.0 / 3.0 * pi * radius * radius * radius;
-}
+Real sphere_mass(const Material& material, Real radius) { return material.density * sphere_volume(radius); }
 
 }  // namespace
 

@@ -20,6 +20,11 @@ KOKKOS_INLINE_FUNCTION Vec3 round_to_single(const Vec3& a) {
   return {round_to_single(a.x), round_to_single(a.y), round_to_single(a.z)};
 }
 
+/// Volume of a sphere [m3] from its radius [m].
+KOKKOS_INLINE_FUNCTION constexpr Real sphere_volume(Real radius) {
+  return 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
+}
+
 /// What the contact search needs of a particle, in half a cache line: a partner is gathered with one load.
 struct alignas(32) PositionRadius {
   Real x, y, z;  ///< centre [m]

@@ -89,9 +89,7 @@ struct WallContactKernel {
     report.impulse += in.kick * f.force;
     report.angular_impulse -= in.kick * (cross(at.point - body.torque_about, f.force) + f.rolling_torque);
     ++report.touching;
-    report.largest_overlap = Kokkos::max(report.largest_overlap, c.overlap / self.radius);
-    report.largest_depth = Kokkos::max(report.largest_depth, c.overlap);
-    report.largest_approach_speed = Kokkos::max(report.largest_approach_speed, c.approach_speed);
+    report.include({c.overlap / self.radius, c.overlap, c.approach_speed});
     return f;
   }
 

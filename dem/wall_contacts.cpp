@@ -9,9 +9,7 @@ void run_wall_contacts(const WallInput& walls, const ContactInput& input, const 
 namespace {
 
 KOKKOS_INLINE_FUNCTION void add_report(WallReport& sum, const WallReport& r) {
-  sum.largest_overlap = Kokkos::max(sum.largest_overlap, r.largest_overlap);
-  sum.largest_depth = Kokkos::max(sum.largest_depth, r.largest_depth);
-  sum.largest_approach_speed = Kokkos::max(sum.largest_approach_speed, r.largest_approach_speed);
+  sum.include(r);
   sum.impulse += r.impulse;
   sum.angular_impulse += r.angular_impulse;
   sum.touching += r.touching;

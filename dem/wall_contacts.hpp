@@ -12,14 +12,11 @@ namespace pellicle::dem {
 
 /// What one block of a wall list reports of one wall: extremes and impulses since the report was last cleared, counts of
 /// the last substep.
-struct WallReport {
-  Real largest_overlap = 0;         ///< largest δ/R [-]
-  Real largest_depth = 0;           ///< largest δ [m]
-  Real largest_approach_speed = 0;  ///< [m/s]
-  Vec3 impulse{};                   ///< that the wall gave to moving particles [N s]
-  Vec3 angular_impulse{};           ///< that particles gave to the wall, about its torque_about [N m s]
-  std::int64_t touching = 0;        ///< contacts
-  std::int64_t crowded = 0;         ///< particles that overlapped more surfaces than are compared
+struct WallReport : ContactExtremes {
+  Vec3 impulse{};             ///< that the wall gave to moving particles [N s]
+  Vec3 angular_impulse{};     ///< that particles gave to the wall, about its torque_about [N m s]
+  std::int64_t touching = 0;  ///< contacts
+  std::int64_t crowded = 0;   ///< particles that overlapped more surfaces than are compared
 };
 
 /// Blocks of a wall list, whatever its length: reports then have a fixed size, and sums do not depend on threads.

@@ -21,13 +21,6 @@ struct ClosestPoint {
 /// Share of a surface's own size within which a point counts as on its rim: beyond what rounding moves it.
 inline constexpr Real rim_share = 1e-7;
 
-/// A unit vector at right angles to a unit vector.
-KOKKOS_INLINE_FUNCTION Vec3 perpendicular_to(const Vec3& a) {
-  const Vec3 other = Kokkos::abs(a.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 p = cross(a, other);
-  return (1 / Kokkos::sqrt(norm_squared(p))) * p;
-}
-
 /// An unbounded plane, solid behind: {x : normal·x = offset}.
 struct PlaneShape {
   Vec3 normal;  ///< unit vector into the particles' side

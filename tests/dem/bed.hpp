@@ -3,6 +3,7 @@
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/random.hpp"
@@ -56,6 +57,10 @@ inline void let_contacts_remember(dem::EngineSetup& setup) {
   setup.contacts.tangential = dem::Mindlin{};
   setup.contacts.rolling = dem::Epsd2{};
 }
+
+/// Mass of a sphere of that glass [kg], and its reduced modulus E* against a rigid wall [Pa]; against glass half of it.
+inline Real glass_mass(Real radius) { return 2500 * 4.0 / 3.0 * M_PI * radius * radius * radius; }
+inline constexpr Real glass_wall_modulus = 1e7 / (1 - 0.25 * 0.25);
 
 /// Walls on the sides of the domain that neither repeat nor are open.
 inline void add_box_walls(dem::EngineSetup& setup) {

@@ -25,7 +25,7 @@ BedFigures compute_bed_figures(const HostParticles& particles, Real floor) {
     bed.mean_speed += speed;
     bed.largest_speed = std::max(bed.largest_speed, speed);
     bed.kinetic_energy += 0.5 * particles.mass[p] * norm_squared(velocity);
-    bed.solids_volume += 4.0 / 3.0 * 3.14159265358979323846 * place.radius * place.radius * place.radius;
+    bed.solids_volume += dem::sphere_volume(place.radius);
   }
   bed.mean_height /= mass;
   bed.mean_speed /= static_cast<Real>(n);

@@ -4,20 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/random.hpp"
 #include "dem/cohesion.hpp"
 #include "dem/fill.hpp"
 #include "dem/materials.hpp"
 #include "dem/neighbour_list.hpp"
+#include "dem/particles.hpp"
 #include "tools/pellicle/case_checks.hpp"
 
 namespace pellicle::tools {
 
 namespace {
-
-Real sphere_volume(Real diameter) { return std::numbers::pi / 6 * diameter * diameter * diameter; }
 
 /// Beyond what an index can count nothing is exact any more.
 std::int64_t whole_number(Real value) { return static_cast<std::int64_t>(std::min(value, 1e18)); }
@@ -25,7 +23,7 @@ std::int64_t whole_number(Real value) { return static_cast<std::int64_t>(std::mi
 }  // namespace
 
 Real mean_particle_volume(const PopulationSpec& population) {
-  if (!population.sizes) return sphere_volume(population.diameter);
+  if (!population.sizes) return dem::sphere_volume(0.5 * population.diameter);
   return dem::SizeSampler(*population.sizes->distribution()).mean_volume();
 }
 
@@ -43,7 +41,7 @@ std::int64_t count_fill(const CaseSpec& spec, std::size_t index) {
   const dem::SizeSampler sizes(*population.sizes->distribution());
   Real filled = 0;
   for (std::int64_t id = 0;; ++id) {
-    const Real next = sphere_volume(draw_diameter(spec, index, sizes, id));
+    const Real next = dem::sphere_volume(0.5 * draw_diameter(spec, index, sizes, id));
     if (filled + next > volume) {
       const bool nearer = filled + next - volume < volume - filled;
       return by_mass && nearer ? id + 1 : id;

@@ -239,13 +239,7 @@ class Checker {
   }
 
   void check_feed(const FeedSpec& feed) {
-    Box bounds = feed.box ? *feed.box : Box{feed.disc->centre, feed.disc->centre};
-    for (int axis = 0; axis < 3 && feed.disc; ++axis) {
-      const Real n = feed.disc->normal[axis];
-      const Real out = feed.disc->radius * std::sqrt(std::max(0.0, 1 - n * n));
-      bounds.min[axis] -= out;
-      bounds.max[axis] += out;
-    }
+    const Box bounds = feed.box ? *feed.box : dem::region_bounds(*feed.disc);
     if (!(inside(bounds.min) && inside(bounds.max))) {
       wrong(feed.where, feed.box ? "box" : "disc", "it reaches out of the domain; " + domain_text());
     }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "cfd/gas_solver.hpp"
@@ -58,7 +57,7 @@ void add_particles(Facts& facts, const CaseSpec& spec) {
   for (std::size_t i = 0; i < spec.particles.size(); ++i) {
     const auto& population = spec.particles[i];
     const Real density = spec.materials[static_cast<std::size_t>(population.material)].density;
-    const auto sphere = [&](Real d) { return density * std::numbers::pi / 6 * d * d * d; };
+    const auto sphere = [&](Real d) { return density * dem::sphere_volume(0.5 * d); };
     if (population.fill) {
       for (const Real radius : draw_radii(spec, i)) mass += sphere(2 * radius);
     }

@@ -1,10 +1,9 @@
 // The particles of a case: lists, and fills of regions.
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "core/error.hpp"
 #include "dem/fill.hpp"
+#include "dem/particles.hpp"
 #include "tools/pellicle/build_case.hpp"
 #include "tools/pellicle/case_checks.hpp"
 #include "tools/pellicle/model_families.hpp"
@@ -14,7 +13,7 @@ namespace {
 
 [[noreturn]] void refuse(const FillSpec& fill, const std::vector<Real>& radii, std::size_t fit) {
   Real volume = 0;
-  for (const Real r : radii) volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  for (const Real r : radii) volume += dem::sphere_volume(r);
   throw InputError(
       fmt::format("{}: {} particles do not fit{} with pattern {} (the solids fraction would be {:.3g}); a "
                   "larger region, or "

@@ -1,32 +1,31 @@
 // Many spheres: what must stay at rest, what must stay constant, what must not depend on threads.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <vector>
 
 #include "dem/fill.hpp"
 #include "tests/dem/bed.hpp"
+#include "tests/dem/child_process.hpp"
 
 namespace pellicle::dem {
 namespace {
 
 using tests::advance;
+using tests::glass_mass;
 using tests::glass_setup;
+using tests::glass_wall_modulus;
 using tests::Grain;
 using tests::grains;
 using tests::random_vector;
 
 constexpr Real g = 9.81;
-constexpr Real wall_modulus = 1e7 / (1 - 0.25 * 0.25);  // E* of glass (1e7 Pa, ν 0.25) against a rigid wall
-constexpr Real pair_modulus = 0.5 * wall_modulus;
-
-Real sphere_mass(Real radius) { return 2500 * 4.0 / 3.0 * M_PI * radius * radius * radius; }
+constexpr Real pair_modulus = 0.5 * glass_wall_modulus;
 
 /// Overlap at which a Hertz contact carries a force.
 Real overlap_of(Real force, Real modulus, Real reduced_radius) {
@@ -38,18 +37,18 @@ TEST(Bed, ALatticeBetweenWallsThatNeedsNoFrictionStaysAtRest) {
   // press with the same small force against each other and the walls. All contact forces run through the centres, so
   // that neither friction nor anything hidden is needed.
   const Real radius = 0.0015;
-  const Real weight = sphere_mass(radius) * g;
+  const Real weight = glass_mass(radius) * g;
   const int n = 4, layers = 5;
   const Real side_force = 0.5 * weight;
   const Real pitch = 2 * radius - overlap_of(side_force, pair_modulus, radius / 2);
-  const Real edge = radius - overlap_of(side_force, wall_modulus, radius);
+  const Real edge = radius - overlap_of(side_force, glass_wall_modulus, radius);
   const Real width = 2 * edge + (n - 1) * pitch;
   auto setup = glass_setup({width, width, 0.02}, 1e-5, 0.9, 0.3, 0.01);
   setup.gravity = {0, 0, -g};
   setup.domain.open_max.z = 1;
   tests::add_box_walls(setup);
   std::vector<ParticleSeed> seeds;
-  Real z = radius - overlap_of(layers * weight, wall_modulus, radius);
+  Real z = radius - overlap_of(layers * weight, glass_wall_modulus, radius);
   for (int k = 0; k < layers; ++k) {
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
@@ -107,7 +106,7 @@ Creep measure_creep(Engine& engine, Real settle, Real watch) {
       creep.largest_speed = std::max(creep.largest_speed, norm(grain.velocity));
     }
   }
-  creep.mean_speed *= sphere_mass(0.0015) / engine.compute_totals().mass;
+  creep.mean_speed *= glass_mass(0.0015) / engine.compute_totals().mass;
   creep.sinking = (height - engine.compute_totals().mean_height) / watch;
   return creep;
 }
@@ -182,7 +181,7 @@ TEST(Bed, UndampedGasKeepsItsEnergy) {
   // Elastic, frictionless spheres in a periodic box. Whenever none touch, their kinetic energy is the initial one.
   const Real radius = 0.0015;
   const Real speed = 1;
-  const Real mass = sphere_mass(radius);
+  const Real mass = glass_mass(radius);
   const Real contact_time =
       2.87 * std::pow(0.25 * mass * mass / (0.5 * radius * pair_modulus * pair_modulus * speed), 0.2);
   auto setup = glass_setup({0.03, 0.03, 0.03}, contact_time / 40, 1, 0);
@@ -282,40 +281,13 @@ std::uint64_t run_busy_bed(bool remembers) {
   return hash;
 }
 
-/// First line that a command prints.
-std::string output_of(const std::string& command) {
-  std::string line;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return "no output";
-  std::array<char, 4096> part{};
-  while (std::fgets(part.data(), part.size(), pipe) != nullptr) {
-    if (std::strncmp(part.data(), "busy bed:", 9) == 0) line = part.data();
-  }
-  return pclose(pipe) == 0 ? line : "failed: " + command;
-}
-
 TEST(Bed, IsTheSameBitForBitWithAnyNumberOfThreads) {
-  // The number of threads is set when a process starts: this test runs its own executable as a child for each.
-  if (std::getenv("PELLICLE_BUSY_BED") != nullptr) {
-    std::printf("\nbusy bed: %d threads %016llx %016llx\n", Host().concurrency(),
-                static_cast<unsigned long long>(run_busy_bed(false)),
-                static_cast<unsigned long long>(run_busy_bed(true)));
+  if (tests::is_child()) {
+    tests::answer(fmt::format("{} threads {:016x} {:016x}", Host().concurrency(), run_busy_bed(false),
+                              run_busy_bed(true)));
     return;
   }
-  std::array<char, 4096> path{};
-  ASSERT_GT(readlink("/proc/self/exe", path.data(), path.size() - 1), 0);
-  const auto run = [&path](int threads) {
-    return output_of("PELLICLE_BUSY_BED=1 OMP_PROC_BIND=false OMP_WAIT_POLICY=passive OMP_NUM_THREADS=" +
-                     std::to_string(threads) + " '" + path.data() +
-                     "' --gtest_filter=Bed.IsTheSameBitForBitWithAnyNumberOfThreads");
-  };
-  const std::string one = run(1);
-  const std::string prefix = "busy bed: 1 threads ";
-  ASSERT_EQ(one.substr(0, prefix.size()), prefix);
-  const std::string hash = one.substr(prefix.size());
-  for (const int threads : {2, 3}) {
-    EXPECT_EQ(run(threads), "busy bed: " + std::to_string(threads) + " threads " + hash);
-  }
+  tests::expect_same_answer({1, 2, 3});
 }
 
 }  // namespace

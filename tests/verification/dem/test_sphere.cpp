@@ -13,16 +13,13 @@ namespace pellicle::dem {
 namespace {
 
 using tests::advance;
+using tests::glass_mass;
 using tests::glass_setup;
+using tests::glass_wall_modulus;
 using tests::Grain;
 using tests::grains;
 
 constexpr Real g = 9.81;
-
-Real sphere_mass(Real radius) { return 2500 * 4.0 / 3.0 * M_PI * radius * radius * radius; }
-
-/// E* of glass (E 1e7 Pa, ν 0.25) against a rigid wall; against glass half of it.
-constexpr Real wall_modulus = 1e7 / (1 - 0.25 * 0.25);
 
 TEST(Sphere, FallsFreely) {
   auto setup = glass_setup({1, 1, 4}, 1e-3);
@@ -55,9 +52,9 @@ struct Rebound {
 
 Rebound measure_rebound(Real restitution, Real speed, bool pair, Real fraction) {
   const Real radius = 0.0015;
-  const Real reduced_mass = (pair ? 0.5 : 1) * sphere_mass(radius);
+  const Real reduced_mass = (pair ? 0.5 : 1) * glass_mass(radius);
   const Real reduced_radius = (pair ? 0.5 : 1) * radius;
-  const Real modulus = (pair ? 0.5 : 1) * wall_modulus;
+  const Real modulus = (pair ? 0.5 : 1) * glass_wall_modulus;
   const Real contact_time =
       2.87 * std::pow(reduced_mass * reduced_mass / (reduced_radius * modulus * modulus * speed), 0.2);
   const Real step = fraction * contact_time;
@@ -120,10 +117,11 @@ TEST(Sphere, ReboundsWithTheRestitutionAskedFor) {
 
 TEST(Sphere, ElasticImpactHasHertzsContactTimeAndOverlap) {
   const Real radius = 0.0015;
-  const Real mass = sphere_mass(radius);
+  const Real mass = glass_mass(radius);
   const Real speed = 0.7;
   // ½ m v² = (8/15) E* √R δ^(5/2); the contact lasts 2 δ/v ∫ dx/√(1 − x^(5/2)) = 2.943275 δ/v (Hertz 1882).
-  const Real overlap = std::pow(15 * mass * speed * speed / (16 * wall_modulus * std::sqrt(radius)), 0.4);
+  const Real overlap =
+      std::pow(15 * mass * speed * speed / (16 * glass_wall_modulus * std::sqrt(radius)), 0.4);
   const Real contact_time = 2.943275 * overlap / speed;
   const Real step = contact_time / 1000;
   auto setup = glass_setup({0.1, 0.1, 0.1}, step, 1);
@@ -147,7 +145,7 @@ TEST(Sphere, ElasticImpactHasHertzsContactTimeAndOverlap) {
 struct Resting {
   Real radius = 0.005;
   Real overlap =
-      std::pow(0.75 * sphere_mass(0.005) * g / (wall_modulus * std::sqrt(0.005)), 2.0 / 3.0);  // Hertz
+      std::pow(0.75 * glass_mass(0.005) * g / (glass_wall_modulus * std::sqrt(0.005)), 2.0 / 3.0);  // Hertz
   Real lever = 0.005 - overlap;
   /// Share of the speed that is left when a sliding sphere rolls: 1/(1 + 0.4 R²/l²), 5/7 for a hard one, from angular
   /// momentum about the line of contact.
@@ -214,7 +212,7 @@ TEST(Sphere, RollingResistanceStopsItWithoutReversingIt) {
   advance(engine, steps);
   // The friction that brakes the centre needs a slip, m a/η_t. Here the critical damping of the tangential stiffness
   // 8 G* √(R δ), G* = E/(2 (2 − ν)(1 + ν)), is below the bound of an explicit step, m/(21 Δt).
-  const Real mass = sphere_mass(rest.radius);
+  const Real mass = glass_mass(rest.radius);
   const Real stiffness = 8 * 1e7 / (2 * 1.75 * 1.25) * std::sqrt(rest.radius * rest.overlap);
   const Real damping = 2 * std::sqrt(stiffness * mass);
   ASSERT_LT(damping, mass / (21 * 1e-5));
@@ -242,8 +240,8 @@ TEST(Sphere, RollingResistanceOfManyContactsStopsTheSpinAndNoMore) {
   tests::add_box_walls(setup);
   Engine engine(setup);
   engine.set_particles({{{half, half, half}, {}, {30, 20, -10}, radius, 0, false}});
-  const Real force = 4.0 / 3.0 * wall_modulus * std::sqrt(radius) * std::pow(0.01 * radius, 1.5);
-  const Real inertia = 0.4 * sphere_mass(radius) * radius * radius;
+  const Real force = 4.0 / 3.0 * glass_wall_modulus * std::sqrt(radius) * std::pow(0.01 * radius, 1.5);
+  const Real inertia = 0.4 * glass_mass(radius) * radius * radius;
   const Real deceleration = 6 * 0.1 * radius * force / inertia;
   const Real start = norm(Vec3{30, 20, -10});
   const auto steps = static_cast<int>(start / deceleration / 1e-5);

@@ -1,39 +1,32 @@
 // Spheres and walls of every kind against closed solutions, and meshes against the exact shapes.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <string>
 #include <vector>
 
 #include "core/checkpoint.hpp"
 #include "tests/core/temporary_folder.hpp"
 #include "tests/dem/bed.hpp"
+#include "tests/dem/child_process.hpp"
 #include "tests/dem/meshes.hpp"
 
 namespace pellicle::dem {
 namespace {
 
 using tests::advance;
+using tests::glass_mass;
 using tests::glass_setup;
+using tests::glass_wall_modulus;
 using tests::Grain;
 using tests::grains;
 using tests::random_vector;
 
 constexpr Real g = 9.81;
 
-Real sphere_mass(Real radius) { return 2500 * 4.0 / 3.0 * M_PI * radius * radius * radius; }
-
-/// E* of glass (E 1e7 Pa, ν 0.25) against a rigid wall.
-constexpr Real wall_modulus = 1e7 / (1 - 0.25 * 0.25);
-
 /// Overlap at which Hertz's force on a sphere is F: F = 4/3 E* √R δ^1.5.
 Real overlap_at(Real force, Real radius) {
-  return std::pow(0.75 * force / (wall_modulus * std::sqrt(radius)), 2.0 / 3.0);
+  return std::pow(0.75 * force / (glass_wall_modulus * std::sqrt(radius)), 2.0 / 3.0);
 }
 
 Wall mesh_wall(const std::vector<TriangleShape>& triangles) {
@@ -61,7 +54,7 @@ std::vector<TriangleShape> square(Real size) {
 TEST(Walls, SphereRollsOverTheSharedEdgeOfTwoTrianglesAsOverAPlane) {
   // At rest on the floor but for rolling at 0.2 m/s across the diagonal, under every law of friction.
   const Real radius = 1e-3;
-  const Real rest = radius - overlap_at(sphere_mass(radius) * g, radius);
+  const Real rest = radius - overlap_at(glass_mass(radius) * g, radius);
   for (const bool remembers : {false, true}) {
     auto setup = glass_setup({0.04, 0.04, 0.02}, 5e-6, 0.8, 0.4, 0.02);
     setup.domain.box.min.z = -0.01;
@@ -107,7 +100,7 @@ std::vector<Real> swing(const Wall& trough, int samples) {
   setup.contacts.rolling = NoRolling{};
   setup.walls = {trough};
   const Real start = 0.3;
-  const Real path = 0.02 - radius + overlap_at(sphere_mass(radius) * g * std::cos(start), radius);
+  const Real path = 0.02 - radius + overlap_at(glass_mass(radius) * g * std::cos(start), radius);
   Engine engine(setup);
   engine.set_particles({{{path * std::sin(start), 0, -path * std::cos(start)}, {}, {}, radius, 0, false}});
   std::vector<Real> angles;
@@ -155,7 +148,7 @@ std::vector<Vec3> ride(Wall table, int samples) {
   setup.contacts.rolling = NoRolling{};
   table.motion.spin = {0, 0, 40};
   setup.walls = {table};
-  const Real height = radius - overlap_at(sphere_mass(radius) * g, radius);
+  const Real height = radius - overlap_at(glass_mass(radius) * g, radius);
   Engine engine(setup);
   // At rest in the world, and rolling on the table: ω × l = −(Ω × r), so that there is no slip.
   const Vec3 x{0.02, 0, height};
@@ -174,7 +167,7 @@ TEST(Walls, SphereOnATurntableGoesInCircles) {
   // A sphere that rolls on a plate that spins at Ω moves in a circle at κ Ω, κ = I/(I + m l²) (2/7 for l = R), whatever
   // the circle: its velocity turns at that rate. Weckesser, Am. J. Phys. 65 (1997) 736.
   const Real radius = 2e-3;
-  const Real lever = radius - overlap_at(sphere_mass(radius) * g, radius);
+  const Real lever = radius - overlap_at(glass_mass(radius) * g, radius);
   const Real rate = 40 * 0.4 * radius * radius / (0.4 * radius * radius + lever * lever);
   const auto plate = ride(revolved_wall({{0, 0, 0}, {0, 0, 1}, 0, 0, 0.09, 0}), 150);
   // The same plate, but of two triangles that really turn.
@@ -194,7 +187,7 @@ TEST(Walls, SphereFollowsAVibratingFloor) {
   // Below free fall, 2 mm at 5 Hz: 2 m/s². The sphere is then carried along: the force is m (g + a), and it stands on the
   // floor with the overlap that goes with that force.
   const Real radius = 2e-3;
-  const Real mass = sphere_mass(radius);
+  const Real mass = glass_mass(radius);
   const Real amplitude = 2e-3, frequency = 5, phase = 0.4;
   const Real rate = 2 * M_PI * frequency;
   auto setup = glass_setup({0.04, 0.04, 0.04}, 1e-5, 0.3, 0.3, 0);
@@ -307,7 +300,7 @@ TEST(Walls, AHeapWeighsOnItsWalls) {
   ASSERT_EQ(report.walls.size(), 3U);
   Vec3 sum{};
   for (const WallLoad& load : report.walls) sum += load.impulse;
-  const Real weight = 150 * sphere_mass(0.001) * g;
+  const Real weight = 150 * glass_mass(0.001) * g;
   // Settled: the rest of the motion is far below the weight times the time.
   EXPECT_LT(norm(engine.compute_totals().momentum - before), 1e-3 * weight * 0.05);
   EXPECT_NEAR(sum.z, -weight * 0.05, 1e-3 * weight * 0.05);
@@ -403,37 +396,16 @@ TEST(Walls, MovingOnesContinueBitForBitAfterACheckpoint) {
   }
 }
 
-std::string line_of(const std::string& command) {
-  std::string line;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return "no output";
-  std::array<char, 4096> part{};
-  while (std::fgets(part.data(), part.size(), pipe) != nullptr) {
-    if (std::strncmp(part.data(), "mill:", 5) == 0) line = part.data();
-  }
-  return pclose(pipe) == 0 ? line : "failed: " + command;
-}
-
 TEST(Walls, AreTheSameBitForBitWithAnyNumberOfThreads) {
-  if (std::getenv("PELLICLE_MILL") != nullptr) {
+  if (tests::is_child()) {
     Engine engine(mill_setup());
     engine.set_particles(mill_load());
     run_outer_steps(engine, 400);
-    std::printf("\nmill: %d threads %016llx\n", Host().concurrency(),
-                static_cast<unsigned long long>(hash_of(engine, engine.collect_report())));
+    tests::answer(
+        fmt::format("{} threads {:016x}", Host().concurrency(), hash_of(engine, engine.collect_report())));
     return;
   }
-  std::array<char, 4096> path{};
-  ASSERT_GT(readlink("/proc/self/exe", path.data(), path.size() - 1), 0);
-  const auto run = [&path](int threads) {
-    return line_of("PELLICLE_MILL=1 OMP_PROC_BIND=false OMP_WAIT_POLICY=passive OMP_NUM_THREADS=" +
-                   std::to_string(threads) + " '" + path.data() +
-                   "' --gtest_filter=Walls.AreTheSameBitForBitWithAnyNumberOfThreads");
-  };
-  const std::string one = run(1);
-  const std::string prefix = "mill: 1 threads ";
-  ASSERT_EQ(one.substr(0, prefix.size()), prefix);
-  EXPECT_EQ(run(2), "mill: 2 threads " + one.substr(prefix.size()));
+  tests::expect_same_answer({1, 2});
 }
 
 TEST(Walls, MovingMeshMissesNoContact) {
@@ -462,7 +434,7 @@ TEST(Walls, MovingMeshMissesNoContact) {
   // An impact at 0.03 × 20 = 0.6 m/s: a contact that began late would be deeper than the elastic one,
   // (15/16 m v²/(E* √R))^0.4.
   const Real elastic =
-      std::pow(15.0 / 16 * sphere_mass(0.001) * 0.36 / (wall_modulus * std::sqrt(0.001)), 0.4) / 0.001;
+      std::pow(15.0 / 16 * glass_mass(0.001) * 0.36 / (glass_wall_modulus * std::sqrt(0.001)), 0.4) / 0.001;
   EXPECT_LT(deepest, 1.05 * elastic);
   EXPECT_GT(deepest, 0.8 * elastic);
 }

@@ -122,6 +122,6 @@ def run_job(job, args):
     # Of a peer on several ranks, the CPU seconds are the first rank's; of this project's threads, all of them.
     cpu = result["cpu_seconds"] / (job["cores"] if job["code"] == "pellicle" else 1)
     result["rate"] = work / result["wall_seconds"] / job["cores"] if result["wall_seconds"] else 0
-    result["cpu_rate"] = work / cpu if cpu else 0
+    result["cpu_rate"] = work / cpu / job["cores"] if cpu else 0
     result["load"] = cpu / result["wall_seconds"] if result["wall_seconds"] else 1
     return result
