@@ -14,7 +14,8 @@ Engine::Engine(const EngineSetup& setup)
     : setup_(setup),
       walls_(setup.walls, setup.domain.box, setup.contacts.springs()),
       history_(setup.contacts.springs(), setup.contacts.cohesion.has_value()),
-      flags_("dem::engine::flags") {
+      flags_("dem::engine::flags"),
+      leaving_("dem::engine::leaving", domain_side_count) {
   if (!(setup.time_step > 0)) throw std::invalid_argument("the particle time step must be positive");
   auto& options = setup_.contacts;
   std::visit([&](auto& law) { law.clip = options.clip; }, options.normal);
@@ -44,6 +45,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   search_.clear();
   started_ = false;
   left_ = 0;
+  left_by_side_ = {};
   entered_mass_ = left_mass_ = 0;
   entered_momentum_ = left_momentum_ = gravity_impulse_ = Vec3{};
   volume_time_ = 0;

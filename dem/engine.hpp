@@ -1,6 +1,7 @@
 // The DEM engine: owns particles, lists and walls, and advances them by substeps.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "dem/motion.hpp"
 #include "dem/neighbour_list.hpp"
 #include "dem/particles.hpp"
+#include "dem/side_totals.hpp"
 #include "dem/wall_system.hpp"
 
 namespace pellicle::dem {
@@ -132,6 +134,8 @@ class Engine {
   const EngineSetup& setup() const { return setup_; }
   ParticleTotals compute_totals() const;
   std::int64_t left_through_open_sides() const { return left_; }
+  /// The same for each side; a particle beyond two is counted for the first.
+  const std::array<SideTotals, domain_side_count>& left_by_side() const { return left_by_side_; }
   /// Mass of the moving particles that were added and that left through open sides so far [kg].
   Real entered_mass() const { return entered_mass_; }
   Real left_mass() const { return left_mass_; }
@@ -188,6 +192,8 @@ class Engine {
   std::int64_t builds_ = 0;
   std::int32_t next_id_ = 0;
   std::int64_t left_ = 0;
+  std::array<SideTotals, domain_side_count> left_by_side_{};
+  DeviceArray<SideTotals> leaving_;  // of one outer step
   Real entered_mass_ = 0, left_mass_ = 0;  // [kg]
   Vec3 entered_momentum_{};
   Vec3 left_momentum_{};

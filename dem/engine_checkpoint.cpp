@@ -21,6 +21,7 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/walls_since", walls_since_);
   file.write("dem/list_builds", builds_);
   file.write("dem/left", left_);
+  file.write("dem/left_by_side", left_by_side_);
   file.write("dem/left_momentum", left_momentum_);
   file.write("dem/left_mass", left_mass_);
   file.write("dem/entered_mass", entered_mass_);
@@ -53,6 +54,7 @@ void Engine::load(core::CheckpointReader& file) {
   walls_since_ = file.read_int64("dem/walls_since");
   builds_ = file.read_int64("dem/list_builds");
   left_ = file.read_int64("dem/left");
+  file.read_into("dem/left_by_side", left_by_side_);
   left_momentum_ = file.read_vec3("dem/left_momentum");
   left_mass_ = file.read_double("dem/left_mass");
   entered_mass_ = file.read_double("dem/entered_mass");

@@ -1,16 +1,12 @@
-// The engine's memory: its arrays, their order in space, and particles that leave.
+// The engine's memory: its arrays and their order in space.
 #include <algorithm>
 
-#include "core/error.hpp"
 #include "dem/engine.hpp"
 #include "dem/engine_arrays.hpp"
 #include "dem/permute.hpp"
 
 namespace pellicle::dem {
 namespace {
-
-/// Outer steps between two re-sorts of memory: neighbours drift apart slowly, a sort costs about one list build.
-constexpr std::int64_t sort_interval = 64;
 
 /// Velocities and spins are put aside together, the rest of the entry after them, so that less scratch is needed.
 struct Motion {
@@ -54,55 +50,6 @@ void permute_motion(const DeviceArray<VelocitySpin>& motion, const DeviceArray<s
         to.material = who[slot].material;
         to.id = who[slot].id;
       });
-}
-
-/// How many particles are beyond an open side, and the highest index of one that is beyond a closed side.
-struct Outside {
-  std::int32_t left = 0;
-  std::int32_t lost = -1;
-};
-
-/// 0 inside, 1 beyond an open side, 2 beyond a closed one. Periodic sides are crossed freely until the next wrap.
-KOKKOS_INLINE_FUNCTION int classify(const Domain& domain, const PositionRadius& place) {
-  const Vec3 x = place.position();
-  int result = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(x[axis] == x[axis])) result = 2;
-    if (domain.periodic[axis] != 0) continue;
-    if (x[axis] < domain.box.min[axis]) result = domain.open_min[axis] != 0 ? Kokkos::max(result, 1) : 2;
-    if (x[axis] > domain.box.max[axis]) result = domain.open_max[axis] != 0 ? Kokkos::max(result, 1) : 2;
-  }
-  return result;
-}
-
-Outside find_outside(const Domain& domain, const Particles& particles) {
-  const auto place = particles.position_radius;
-  std::int32_t left = 0;
-  std::int32_t lost = -1;
-  Kokkos::parallel_reduce(
-      "dem::engine_memory::find_outside", DeviceRange(0, particles.count),
-      KOKKOS_LAMBDA(const Index p, std::int32_t& l, std::int32_t& w) {
-        const int where = classify(domain, place(p));
-        if (where == 1) ++l;
-        if (where == 2 && p > w) w = p;
-      },
-      Kokkos::Sum<std::int32_t>(left), Kokkos::Max<std::int32_t>(lost));
-  return {left, lost < 0 ? -1 : lost};
-}
-
-/// New place of every particle that stays, in the present order; returns how many stay.
-Index rank_staying(const Domain& domain, const Particles& particles, const DeviceArray<std::int32_t>& order) {
-  const auto place = particles.position_radius;
-  std::int32_t staying = 0;
-  Kokkos::parallel_scan(
-      "dem::engine_memory::rank_staying", DeviceRange(0, particles.count),
-      KOKKOS_LAMBDA(const Index p, std::int32_t& rank, const bool final) {
-        const bool stays = classify(domain, place(p)) != 1;
-        if (final && stays) order(rank) = p;
-        if (stays) ++rank;
-      },
-      staying);
-  return staying;
 }
 
 }  // namespace
@@ -152,35 +99,5 @@ void Engine::sort_memory() {
 }
 
 void Engine::canonicalise() { sort_memory(); }
-
-void Engine::remove_left() {
-  const DeviceArray<std::int32_t>& order = result_.touching_new;  // free between substeps
-  const Vec3 momentum = compute_totals().momentum;
-  const Index staying = rank_staying(setup_.domain, particles_, order);
-  left_ += particles_.count - staying;
-  reorder(order, staying);
-  const ParticleTotals rest = compute_totals();
-  left_momentum_ += momentum - rest.momentum;
-  left_mass_ += moving_mass_ - rest.mass;
-  moving_mass_ = rest.mass;
-  moving_volume_ = rest.volume;
-}
-
-void Engine::prepare_outer_step() {
-  if (particles_.count == 0) return;
-  const Outside outside = find_outside(setup_.domain, particles_);
-  if (outside.lost >= 0) {
-    const auto place = Kokkos::create_mirror_view_and_copy(
-        Kokkos::HostSpace{}, Kokkos::subview(particles_.position_radius, outside.lost));
-    const auto motion = Kokkos::create_mirror_view_and_copy(
-        Kokkos::HostSpace{}, Kokkos::subview(particles_.velocity_spin, outside.lost));
-    throw RunError("particle " + std::to_string(motion().id) + " is outside the domain at (" +
-                   std::to_string(place().x) + ", " + std::to_string(place().y) + ", " +
-                   std::to_string(place().z) +
-                   ") m, beyond a side that is not open; no wall held it, or it was too fast for the wall");
-  }
-  if (outside.left > 0) remove_left();
-  if (++outer_steps_since_sort_ >= sort_interval) sort_memory();
-}
 
 }  // namespace pellicle::dem

@@ -100,7 +100,7 @@ SiteRow row_of_lattice(const Box& box, int axis, Real largest, Real pitch) {
 constexpr Real lattice_pitch = 1.0005;  // of the largest diameter: neighbours do not touch
 
 std::vector<Vec3> fill_lattice(const Room& room, const Box& box, const std::vector<Real>& radii, Real largest,
-                               const OverlapGrid& present) {
+                               const OverlapGrid& present, const Obstacles& obstacles) {
   std::vector<Vec3> centres;
   const Real pitch = 2 * lattice_pitch * largest;
   const SiteRow x = row_of_lattice(box, 0, largest, pitch), y = row_of_lattice(box, 1, largest, pitch),
@@ -112,7 +112,8 @@ std::vector<Vec3> fill_lattice(const Room& room, const Box& box, const std::vect
         if (centres.size() == radii.size()) return centres;
         const Vec3 site{x.first + pitch * i, y.first + pitch * j, z.first + pitch * k};
         const Real radius = radii[centres.size()];
-        if (room.holds(site, radius) && present.free(site, radius)) centres.push_back(site);
+        if (room.holds(site, radius) && present.free(site, radius) && obstacles.clear(site, radius))
+          centres.push_back(site);
       }
     }
   }
@@ -122,7 +123,7 @@ std::vector<Vec3> fill_lattice(const Room& room, const Box& box, const std::vect
 /// Layers of rows, each row in the gaps of the one before, each layer over the gaps of the one below (hexagonal close
 /// packing), the rows along x.
 std::vector<Vec3> fill_hexagonal(const Room& room, const Box& box, const std::vector<Real>& radii,
-                                 Real largest, const OverlapGrid& present) {
+                                 Real largest, const OverlapGrid& present, const Obstacles& obstacles) {
   std::vector<Vec3> centres;
   const Real pitch = 2 * lattice_pitch * largest;
   const SiteRow x = row_of_lattice(box, 0, largest, pitch),
@@ -138,7 +139,8 @@ std::vector<Vec3> fill_hexagonal(const Room& room, const Box& box, const std::ve
         const Vec3 site{left + pitch * (i + 0.5 * ((j + k) % 2)), front + y.pitch * (j + (k % 2) / 3.0),
                         z.first + z.pitch * k};
         const Real radius = radii[centres.size()];
-        if (room.holds(site, radius) && present.free(site, radius)) centres.push_back(site);
+        if (room.holds(site, radius) && present.free(site, radius) && obstacles.clear(site, radius))
+          centres.push_back(site);
       }
     }
   }
@@ -147,7 +149,7 @@ std::vector<Vec3> fill_hexagonal(const Room& room, const Box& box, const std::ve
 
 /// Random sequential addition.
 std::vector<Vec3> fill_one_by_one(const Room& room, const Box& box, const std::vector<Real>& radii,
-                                  std::uint64_t seed, OverlapGrid& grid) {
+                                  std::uint64_t seed, OverlapGrid& grid, const Obstacles& obstacles) {
   constexpr int tries = 20000;  // a sphere; at 0.35 solids about one try in a thousand finds a gap
   std::vector<Vec3> centres(radii.size());
   // Large ones first: small ones still find gaps when the region is nearly full.
@@ -165,7 +167,7 @@ std::vector<Vec3> fill_one_by_one(const Room& room, const Box& box, const std::v
       for (int a = 0; a < 3; ++a) {
         x[a] = box.min[a] + radius + share[a] * (box.max[a] - box.min[a] - 2 * radius);
       }
-      if (!room.holds(x, radius) || !grid.free(x, radius)) continue;
+      if (!room.holds(x, radius) || !grid.free(x, radius) || !obstacles.clear(x, radius)) continue;
       grid.add({x, radius});
       centres[order[placed]] = x;
       found = true;
@@ -180,7 +182,7 @@ std::vector<Vec3> fill_one_by_one(const Room& room, const Box& box, const std::v
 
 /// Sites of a cubic lattice spread over the region, at least as many as asked for: the widest pitch that has them.
 std::vector<Vec3> spread_sites(const Room& room, const FillRegion& region, std::size_t count,
-                               Real mean_radius, const OverlapGrid& present) {
+                               Real mean_radius, const OverlapGrid& present, const Obstacles& obstacles) {
   const Box box = region_bounds(region);
   std::vector<Vec3> sites;
   Real pitch = std::cbrt(region_volume(region) / static_cast<Real>(count));
@@ -201,7 +203,8 @@ std::vector<Vec3> spread_sites(const Room& room, const FillRegion& region, std::
           const Vec3 site{x.first + x.pitch * i, y.first + y.pitch * j, z.first + z.pitch * k};
           Vec3 near = site;
           if (!room.bring_inside(near, mean_radius)) return {};
-          if (norm(near - site) <= 0.5 * pitch && present.free(near, mean_radius)) sites.push_back(near);
+          if (norm(near - site) > 0.5 * pitch || !present.free(near, mean_radius)) continue;
+          if (obstacles.clear(near, mean_radius)) sites.push_back(near);
         }
       }
     }
@@ -212,11 +215,11 @@ std::vector<Vec3> spread_sites(const Room& room, const FillRegion& region, std::
 /// Random places in the cells of a lattice, moved apart until none overlaps.
 std::vector<Vec3> fill_densely(const Room& room, const FillRegion& region, const std::vector<Real>& radii,
                                std::uint64_t seed, const std::vector<PlacedSphere>& present,
-                               const OverlapGrid& grid) {
+                               const OverlapGrid& grid, const Obstacles& obstacles) {
   constexpr int most_sweeps = 2000;
   Real mean_radius = 0;
   for (const Real r : radii) mean_radius += r / static_cast<Real>(radii.size());
-  std::vector<Vec3> sites = spread_sites(room, region, radii.size(), mean_radius, grid);
+  std::vector<Vec3> sites = spread_sites(room, region, radii.size(), mean_radius, grid, obstacles);
   if (sites.size() < radii.size()) return {};
   const Real jitter = std::cbrt(region_volume(region) / static_cast<Real>(radii.size()));
   // Fisher-Yates: which site a sphere gets says nothing about its number or size, and those left over are anywhere.
@@ -229,15 +232,17 @@ std::vector<Vec3> fill_densely(const Room& room, const FillRegion& region, const
   }
   sites.resize(radii.size());
   for (std::size_t p = 0; p < radii.size(); ++p) room.bring_inside(sites[p], radii[p]);
-  if (!relax_spheres(room, sites, radii, present, most_sweeps).clear) sites.clear();
+  if (!relax_spheres(room, sites, radii, present, most_sweeps, obstacles).clear) sites.clear();
   return sites;
 }
 
 }  // namespace
 
 std::vector<Vec3> fill_region(const FillRegion& region, FillPattern pattern, const std::vector<Real>& radii,
-                              std::uint64_t seed, const std::vector<PlacedSphere>& present) {
+                              std::uint64_t seed, const std::vector<PlacedSphere>& present,
+                              Obstacles obstacles) {
   if (radii.empty()) return {};
+  obstacles.choose_sides(region);
   const Room room(region);
   const Box box = region_bounds(region);
   const Real largest = *std::max_element(radii.begin(), radii.end());
@@ -245,17 +250,18 @@ std::vector<Vec3> fill_region(const FillRegion& region, FillPattern pattern, con
   for (const auto& s : present) reach = std::max(reach, s.radius);
   OverlapGrid grid(box, 2 * reach, radii.size() + present.size());
   for (const auto& s : present) grid.add(s);
-  if (pattern == FillPattern::lattice) return fill_lattice(room, box, radii, largest, grid);
-  if (pattern == FillPattern::hexagonal) return fill_hexagonal(room, box, radii, largest, grid);
+  if (pattern == FillPattern::lattice) return fill_lattice(room, box, radii, largest, grid, obstacles);
+  if (pattern == FillPattern::hexagonal)
+    return fill_hexagonal(room, box, radii, largest, grid, obstacles);
   Real volume = 0;
   for (const Real r : radii) volume += sphere_volume(r);
   std::vector<Vec3> some;
   if (volume <= one_by_one_limit * region_volume(region)) {
     OverlapGrid filling = grid;
-    some = fill_one_by_one(room, box, radii, seed, filling);
+    some = fill_one_by_one(room, box, radii, seed, filling, obstacles);
     if (some.size() == radii.size()) return some;
   }
-  const std::vector<Vec3> all = fill_densely(room, region, radii, seed, present, grid);
+  const std::vector<Vec3> all = fill_densely(room, region, radii, seed, present, grid, obstacles);
   return all.size() == radii.size() ? all : some;
 }
 

@@ -131,7 +131,8 @@ bool none_overlaps(const Pairs& pairs, const std::vector<Pairs::Sphere>& spheres
 }  // namespace
 
 Relaxation relax_spheres(const Room& room, std::vector<Vec3>& centres, const std::vector<Real>& radii,
-                         const std::vector<PlacedSphere>& fixed, int most_sweeps) {
+                         const std::vector<PlacedSphere>& fixed, int most_sweeps,
+                         const Obstacles& obstacles) {
   Relaxation result;
   if (centres.empty()) return {true, 0};
   const std::size_t movable = centres.size();
@@ -154,11 +155,16 @@ Relaxation relax_spheres(const Room& room, std::vector<Vec3>& centres, const std
 
   Pairs pairs;
   std::vector<Vec3> built_at(spheres.size());
+  std::vector<char> near_wall(spheres.size(), 0);  // may meet one before the pairs are searched again
   bool outdated = true;
   for (; result.sweeps < most_sweeps && !result.clear; ++result.sweeps) {
     if (outdated) {
       pairs.build(spheres, place, movable, skin);
-      for (std::size_t p = 0; p < spheres.size(); ++p) built_at[p] = spheres[p].x;
+      for (std::size_t p = 0; p < spheres.size(); ++p) {
+        built_at[p] = spheres[p].x;
+        if (!obstacles.empty() && !is_fixed(p))
+          near_wall[p] = obstacles.deepest(spheres[p].x, spheres[p].r + skin) ? 1 : 0;
+      }
     }
     bool pushed = false;
     pairs.for_each([&](std::size_t a, std::size_t b) {
@@ -181,6 +187,10 @@ Relaxation relax_spheres(const Room& room, std::vector<Vec3>& centres, const std
     for (std::size_t p = 0; p < spheres.size(); ++p) {
       if (is_fixed(p)) continue;
       room.bring_inside(spheres[p].x, spheres[p].r);
+      if (near_wall[p] != 0 && obstacles.push_out(spheres[p].x, spheres[p].r)) {
+        room.bring_inside(spheres[p].x, spheres[p].r);
+        pushed = pushed || !obstacles.clear(spheres[p].x, spheres[p].r);
+      }
       outdated = outdated || norm_squared(spheres[p].x - built_at[p]) > allowance;
     }
     // A push may have closed a gap that had been looked at before.

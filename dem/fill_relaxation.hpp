@@ -14,11 +14,12 @@ struct Relaxation {
   int sweeps = 0;
 };
 
-/// Moves spheres apart until none overlaps another or one of `fixed`, and all are inside: sweeps over all pairs that
+/// Moves spheres apart until none overlaps another, one of `fixed` or an obstacle, and all are inside: sweeps over all pairs that
 /// come near, each pair that is too close is pushed to a little more than contact (Gauss-Seidel projection; the same
 /// idea removes overlaps in Jodrey & Tory, Phys. Rev. A 32 (1985) 2347). Radii in m, one a centre. The
 /// result depends on the input alone. Gives up after `most_sweeps`.
 Relaxation relax_spheres(const Room& room, std::vector<Vec3>& centres, const std::vector<Real>& radii,
-                         const std::vector<PlacedSphere>& fixed, int most_sweeps);
+                         const std::vector<PlacedSphere>& fixed, int most_sweeps,
+                         const Obstacles& obstacles = {});
 
 }  // namespace pellicle::dem

@@ -163,7 +163,8 @@ TriangleMesh weld_facets(const std::vector<Facet>& facets, MeshReport& report) {
   look_at_edges(mesh, report);
   report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
   report.corners = static_cast<std::int64_t>(mesh.corners.size());
-  if (report.watertight()) {
+  mesh.closed = report.watertight();
+  if (mesh.closed) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const TriangleShape shape = mesh.triangle(t);
       report.volume += dot(shape.a - report.min, cross(shape.b - report.min, shape.c - report.min)) / 6;

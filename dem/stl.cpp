@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 #include <vector>
 
@@ -211,7 +213,26 @@ TriangleMesh parse_stl(std::string_view content, Real scale, MeshReport& report)
   return mesh;
 }
 
+namespace {
+
+/// Refuses a file that is none, or too large to be read, from its size and the header of a binary file.
+void check_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) refuse("it cannot be read", "a file that is there");
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  std::array<char, header_size + 4> header{};
+  std::uint32_t count = 0;
+  if (std::ifstream(path, std::ios::binary).read(header.data(), header.size())) {
+    std::memcpy(&count, header.data() + header_size, sizeof count);
+    if (size == header.size() + std::uintmax_t{count} * facet_size) check_count(count);
+  }
+  if (size > most_bytes) refuse(fmt::format("it has {} bytes", size), fmt::format("at most {}", most_bytes));
+}
+
+}  // namespace
+
 TriangleMesh read_stl(const std::filesystem::path& path, Real scale, MeshReport& report) {
+  check_file(path);
   std::string content;
   try {
     content = core::read_file(path);

@@ -39,7 +39,10 @@ std::string doubts_about_mesh(const MeshReport& report);
 /// are no numbers, too many triangles, none with an area.
 TriangleMesh parse_stl(std::string_view content, Real scale, MeshReport& report);
 
-/// The same from a file.
+/// A larger file is not read: five million triangles as text take about half as much.
+inline constexpr std::uintmax_t most_bytes = 2'500'000'000;
+
+/// The same from a file, of which no more than the header is read if that announces too many triangles.
 TriangleMesh read_stl(const std::filesystem::path& path, Real scale, MeshReport& report);
 
 }  // namespace pellicle::dem

@@ -9,9 +9,9 @@
 namespace pellicle::dem {
 namespace {
 
-template <class T>
-DeviceArray<T> to_device(const char* label, const std::vector<T>& values) {
-  DeviceArray<T> array(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), values.size());
+template <class Space, class T>
+Kokkos::View<T*, Space> copy_to(const char* label, const std::vector<T>& values) {
+  Kokkos::View<T*, Space> array(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), values.size());
   const auto host = Kokkos::create_mirror_view(array);
   std::copy(values.begin(), values.end(), host.data());
   Kokkos::deep_copy(array, host);
@@ -149,9 +149,7 @@ void add_primitives(const Wall& wall, std::int32_t number, std::vector<WallSurfa
   for (const BoxShape& b : wall.boxes) surfaces.push_back({Kind::box, number, b.min, b.max, 0, 0, 0, 0});
 }
 
-}  // namespace
-
-WallGeometry make_wall_geometry(const std::vector<Wall>& walls) {
+HostGeometry gather(const std::vector<Wall>& walls) {
   HostGeometry host;
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const Wall& wall = walls[w];
@@ -160,18 +158,33 @@ WallGeometry make_wall_geometry(const std::vector<Wall>& walls) {
     add_primitives(wall, number, host.surfaces);
     if (wall.mesh) add_mesh(*wall.mesh, number, host);
   }
-  WallGeometry geometry;
+  return host;
+}
+
+template <class Space>
+BasicWallGeometry<Space> make_geometry(const std::vector<Wall>& walls) {
+  const HostGeometry host = gather(walls);
+  std::vector<WallPose> poses;
+  for (const WallBody& body : host.bodies) poses.push_back(compute_pose_at_rest(body.motion));
+  BasicWallGeometry<Space> geometry;
   geometry.primitives = static_cast<Index>(host.surfaces.size());
-  geometry.surface = to_device("dem::wall_geometry::surface", host.surfaces);
-  geometry.body = to_device("dem::wall_geometry::body", host.bodies);
-  geometry.pose = DeviceArray<WallPose>("dem::wall_geometry::pose", walls.size());
-  geometry.triangle = to_device("dem::wall_geometry::triangle", host.triangles);
-  geometry.triangle_wall = to_device("dem::wall_geometry::triangle_wall", host.triangle_wall);
-  geometry.grid = to_device("dem::wall_geometry::grid", host.grids);
-  geometry.cell_start = to_device("dem::wall_geometry::cell_start", host.cell_start);
-  geometry.cell_triangle = to_device("dem::wall_geometry::cell_triangle", host.cell_triangle);
-  update_poses(geometry, -1);
+  geometry.surface = copy_to<Space>("dem::wall_geometry::surface", host.surfaces);
+  geometry.body = copy_to<Space>("dem::wall_geometry::body", host.bodies);
+  geometry.pose = copy_to<Space>("dem::wall_geometry::pose", poses);
+  geometry.triangle = copy_to<Space>("dem::wall_geometry::triangle", host.triangles);
+  geometry.triangle_wall = copy_to<Space>("dem::wall_geometry::triangle_wall", host.triangle_wall);
+  geometry.grid = copy_to<Space>("dem::wall_geometry::grid", host.grids);
+  geometry.cell_start = copy_to<Space>("dem::wall_geometry::cell_start", host.cell_start);
+  geometry.cell_triangle = copy_to<Space>("dem::wall_geometry::cell_triangle", host.cell_triangle);
   return geometry;
+}
+
+}  // namespace
+
+WallGeometry make_wall_geometry(const std::vector<Wall>& walls) { return make_geometry<Device>(walls); }
+
+BasicWallGeometry<Host> make_host_wall_geometry(const std::vector<Wall>& walls) {
+  return make_geometry<Host>(walls);
 }
 
 void update_poses(const WallGeometry& geometry, Real time) {

@@ -50,17 +50,21 @@ struct MeshGrid {
   }
 };
 
-/// Surfaces are numbered: primitives first, then triangles.
-struct WallGeometry {
+/// Surfaces are numbered: primitives first, then triangles. In the memory of the execution space `Space`.
+template <class Space>
+struct BasicWallGeometry {
+  template <class T>
+  using Array = Kokkos::View<T*, Space>;
+
   Index primitives = 0;
-  DeviceArray<WallSurface> surface;
-  DeviceArray<WallBody> body;
-  DeviceArray<WallPose> pose;  ///< of every body, at the present moment
-  DeviceArray<TriangleShape> triangle;
-  DeviceArray<std::int32_t> triangle_wall;
-  DeviceArray<MeshGrid> grid;
-  DeviceArray<std::int32_t> cell_start;
-  DeviceArray<std::int32_t> cell_triangle;
+  Array<WallSurface> surface;
+  Array<WallBody> body;
+  Array<WallPose> pose;  ///< of every body, at the present moment
+  Array<TriangleShape> triangle;
+  Array<std::int32_t> triangle_wall;
+  Array<MeshGrid> grid;
+  Array<std::int32_t> cell_start;
+  Array<std::int32_t> cell_triangle;
 
   KOKKOS_INLINE_FUNCTION std::int32_t wall_of(Index s) const {
     return s < primitives ? surface(s).wall : triangle_wall(s - primitives);
@@ -79,17 +83,22 @@ struct WallGeometry {
   }
 };
 
+using WallGeometry = BasicWallGeometry<Device>;
+
 /// Copies walls to the device; bodies rest, with no allowance. Throws std::invalid_argument where there are more triangles
 /// than can be numbered.
 WallGeometry make_wall_geometry(const std::vector<Wall>& walls);
+
+/// The same in host memory.
+BasicWallGeometry<Host> make_host_wall_geometry(const std::vector<Wall>& walls);
 
 /// Brings all poses to `time` seconds after walls began to move; negative: before that.
 void update_poses(const WallGeometry& geometry, Real time);
 
 /// Calls `visit(s)` for every triangle of a mesh whose distance from the point c of the wall's frame is below `reach`,
 /// each once, until it returns true; says whether it did.
-template <class Visit>
-KOKKOS_INLINE_FUNCTION bool visit_triangles(const WallGeometry& geometry, const MeshGrid& grid, const Vec3& c,
+template <class Space, class Visit>
+KOKKOS_INLINE_FUNCTION bool visit_triangles(const BasicWallGeometry<Space>& geometry, const MeshGrid& grid, const Vec3& c,
                                             Real reach, const Visit& visit) {
   Index3 low, high;
   for (int axis = 0; axis < 3; ++axis) {

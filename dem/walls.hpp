@@ -17,6 +17,7 @@ namespace pellicle::dem {
 struct TriangleMesh {
   std::vector<Vec3> corners;  ///< [m]
   std::vector<std::array<std::int32_t, 3>> triangles;
+  bool closed = false;  ///< watertight: every point that is not on it is either within or outside
 
   TriangleShape triangle(std::size_t t) const {
     const auto corner = [&](std::size_t i) { return corners[static_cast<std::size_t>(triangles[t][i])]; };

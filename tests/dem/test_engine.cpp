@@ -185,6 +185,11 @@ TEST(Engine, OpenSidesLetParticlesLeaveAndCountThem) {
   const Real mass = 2500 * 4.0 / 3.0 * M_PI * 1e-9;
   EXPECT_NEAR(engine.left_momentum().z, mass, 1e-13 * mass);
   EXPECT_NEAR(engine.left_momentum().x, -8 * mass, 1e-13 * mass);
+  const auto& by_side = engine.left_by_side();  // left, right, front, back, bottom, top
+  for (std::size_t side = 0; side < by_side.size(); ++side) {
+    EXPECT_EQ(by_side[side].particles, side == 0 || side == 5 ? 1 : 0) << side;
+    EXPECT_NEAR(by_side[side].mass, (side == 0 ? 8 : side == 5 ? 1 : 0) * mass, 1e-14 * mass) << side;
+  }
   const auto rest = grains(engine.particles());
   EXPECT_EQ(rest[0].id, 1);
   EXPECT_EQ(rest[1].id, 3);
@@ -425,6 +430,8 @@ TEST(Engine, ResumesAfterTheLastParticleHasLeft) {
   run_outer_steps(engine, 2);
   run_outer_steps(resumed, 2);
   EXPECT_EQ(resumed.left_through_open_sides(), 1);
+  EXPECT_EQ(resumed.left_by_side()[5].particles, 1);
+  EXPECT_EQ(resumed.left_by_side()[5].mass, engine.left_mass());
   EXPECT_TRUE(state_of(engine) == state_of(resumed));
 }
 

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 
+#include "tests/core/temporary_folder.hpp"
 #include "tests/dem/meshes.hpp"
 
 namespace pellicle::dem {
@@ -55,6 +58,34 @@ TEST(Stl, ReadsAsciiAndBinaryAlike) {
     EXPECT_EQ(mesh.triangle(7).a, 1e-3 * box[7].a);
     EXPECT_EQ(mesh.triangle(7).c, 1e-3 * box[7].c);
   }
+}
+
+TEST(Stl, FilesThatAreNoneOrTooLargeAreNotRead) {
+  const tests::TemporaryFolder folder;
+  MeshReport report;
+  const auto error = [&](const std::filesystem::path& path) {
+    try {
+      read_stl(path, 1, report);
+    } catch (const std::invalid_argument& problem) {
+      return std::string(problem.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error(folder / "none.stl"), "it cannot be read; a file that is there");
+  EXPECT_EQ(error(folder / "."), "it cannot be read; a file that is there");
+  EXPECT_EQ(error("/dev/zero"), "it cannot be read; a file that is there");  // without end
+  // Ten million triangles of nothing: a file with a hole, so that it takes no space.
+  const auto large = folder / "large.stl";
+  {
+    std::ofstream file(large, std::ios::binary);
+    const std::uint32_t count = 10'000'000;
+    file.write(std::string(80, ' ').data(), 80).write(reinterpret_cast<const char*>(&count), sizeof count);
+  }
+  std::filesystem::resize_file(large, 84 + std::uintmax_t{50} * 10'000'000);
+  EXPECT_EQ(error(large),
+            "it has 10000000 triangles; at most 5000000: a mesh much finer than the particles gains nothing");
+  std::filesystem::resize_file(large, most_bytes + 1);
+  EXPECT_EQ(error(large), "it has 2500000001 bytes; at most 2500000000");
 }
 
 TEST(Stl, SaysWhatIsDoubtful) {

@@ -64,6 +64,7 @@ output:
     - {name: centre, point: ["20 mm", "5 mm", "30 mm"], quantities: [pressure, void_fraction], every: "2 ms"}
     - {name: bead, particle: 7}
     - {name: whole, bed: {}}
+    - {name: out, side: top, quantities: [left_mass, outflow_rate]}
   histograms:
     - {name: speeds, quantity: particle_speed, bins: 20, min: 0, max: 2, weight: mass, every: "0.5 s"}
 )";

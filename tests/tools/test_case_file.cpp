@@ -445,6 +445,9 @@ TEST(CaseErrors, Outputs) {
             "--set: output.probes.centre.quantities: particle_speed does not fit this kind of probe; ga");
   EXPECT_EQ(bed_errors("output.probes.bead.particle=999").substr(0, 70),
             "--set: output.probes.bead.particle: there is no particle 999; 0 to 498");
+  EXPECT_EQ(bed_errors("output.probes.out.side=bottom"),
+            "--set: output.probes.out.side: nothing can leave through bottom; a side that is named in open of "
+            "the box of walls");
   EXPECT_EQ(bed_errors("output.histograms.speeds.max=-1"),
             "--set: output.histograms.speeds.max: it is not above min; a larger number");
   EXPECT_EQ(pair_errors("output.probes=[{name: p, point: [0.5, 0.5, 0.5]}]"),
@@ -517,7 +520,7 @@ TEST(CaseParticles, PopulationsOfOneRegionMix) {
       "{material: glass, diameter: 2 mm, fill: {box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03]}, "
       "solids_fraction: 0.25}}";
   const CaseSpec spec = parse_case(powders_case, "c.yaml", {"particles=[" + half + ", " + half + "]"});
-  const auto particles = make_particles(spec);
+  const auto particles = make_particles(spec, {});
   ASSERT_EQ(particles.size(), 2u * static_cast<std::size_t>(spec.particles[0].filled));
   Real heights[2] = {0, 0};
   for (std::size_t a = 0; a < particles.size(); ++a) {

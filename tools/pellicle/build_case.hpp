@@ -13,8 +13,9 @@ namespace pellicle::tools {
 /// Materials, contact models, walls and domain of the particles; time step in s (the one the loop really uses).
 dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step);
 
-/// All particles of the case, populations in the order of the file. Throws InputError if they do not fit.
-std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec);
+/// All particles of the case, populations in the order of the file. Throws InputError if they do not fit, or if one that
+/// can move starts inside one of the walls, which are those of the case.
+std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec, const std::vector<dem::Wall>& walls);
 
 /// The feeds of the case, in the order of the file.
 std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::Domain& domain);

@@ -1,5 +1,7 @@
 #include "tools/pellicle/build_walls.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -7,6 +9,8 @@
 #include "core/error.hpp"
 #include "core/log.hpp"
 #include "dem/stl.hpp"
+#include "tools/pellicle/case_checks.hpp"
+#include "tools/pellicle/model_families.hpp"
 
 namespace pellicle::tools {
 namespace {
@@ -36,11 +40,36 @@ dem::RevolvedShape revolve(const Vec3& from, const Vec3& to, Real radius_from, R
   return {from, (1 / length) * (to - from), radius_from, 0, radius_to, length};
 }
 
+/// A mesh in the wrong unit is a thousand times too large or too small: away from the domain, or smaller than a particle.
+void check_size(const CaseSpec& spec, const WallSpec& wall, const dem::MeshReport& report) {
+  const auto largest = [](const Vec3& v) { return std::max({v.x, v.y, v.z}); };
+  const Box& box = spec.domain.box;
+  const Real domain = largest(box.max - box.min);
+  const Real size = largest(report.max - report.min);
+  bool apart = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    apart = apart || report.min[axis] > box.max[axis] || report.max[axis] < box.min[axis];
+  }
+  const Real particle = diameter_range(spec).smallest;
+  const bool tiny = size < 0.01 * domain && size < particle;
+  if (!apart && !tiny && size <= 50 * domain) return;
+  const auto text = [](const Vec3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x, v.y, v.z); };
+  throw std::invalid_argument(fmt::format(
+      "with unit {} it reaches from {} to {} m, which is {}; coordinates that fit the domain from {} to {} m, "
+      "or another unit",
+      length_units[static_cast<std::size_t>(wall.unit.value_or(0))].name, text(report.min), text(report.max),
+      tiny    ? fmt::format("smaller than a particle of {:.4g} m", particle)
+      : apart ? "apart from the domain"
+              : "far larger than the domain",
+      text(box.min), text(box.max)));
+}
+
 void add_mesh(const CaseSpec& spec, const WallSpec& wall, dem::Wall& made) {
   try {
     dem::MeshReport report;
     const Real scale = metres.at(static_cast<std::size_t>(wall.unit.value_or(0)));
     made.mesh = std::make_shared<dem::TriangleMesh>(dem::read_stl(*wall.stl, scale, report));
+    check_size(spec, wall, report);
     core::log().info("wall {}: {}", wall.name, dem::describe_mesh(report));
     const std::string doubts = dem::doubts_about_mesh(report);
     if (!doubts.empty()) core::log().warn("wall {}: {}", wall.name, doubts);

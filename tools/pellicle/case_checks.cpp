@@ -269,6 +269,15 @@ class Checker {
     return spec_.domain.periodic[static_cast<std::size_t>(cfd::axis_of(side))];
   }
 
+  /// Whether particles may leave there: without box walls through every side that does not repeat.
+  bool open(cfd::Side side) const {
+    const auto left_out = [&](const WallSpec& w) {
+      return std::find(w.open.begin(), w.open.end(), side) != w.open.end();
+    };
+    const bool boxed = std::any_of(spec_.walls.begin(), spec_.walls.end(), [](const WallSpec& w) { return w.box; });
+    return !periodic(side) && (!boxed || std::any_of(spec_.walls.begin(), spec_.walls.end(), left_out));
+  }
+
   void check_sides() {
     for (const auto& wall : spec_.walls) {
       for (const cfd::Side side : wall.open) {
@@ -392,8 +401,12 @@ class Checker {
               fmt::format("{} m is outside the domain; {}", text(*probe.point), domain_text()));
       }
     } else if (spec_.particles.empty()) {
-      wrong(probe.where, probe.bed ? "bed" : (probe.wall ? "wall" : "particle"),
+      wrong(probe.where, probe.bed ? "bed" : (probe.wall ? "wall" : (probe.side ? "side" : "particle")),
             "the case has no particles; point");
+    } else if (probe.side && !open(static_cast<cfd::Side>(*probe.side))) {
+      wrong(probe.where, "side",
+            fmt::format("nothing can leave through {}; a side that is named in open of the box of walls",
+                        side_name(static_cast<cfd::Side>(*probe.side))));
     } else if (probe.wall && std::none_of(spec_.walls.begin(), spec_.walls.end(),
                                           [&](const WallSpec& w) { return w.name == *probe.wall; })) {
       std::string names;

@@ -61,6 +61,7 @@ core::ModelList quantities_of(const ProbeSpec& probe) {
   if (probe.point) return gas_quantities;
   if (probe.particle) return particle_quantities;
   if (probe.wall) return wall_quantities;
+  if (probe.side) return side_quantities;
   return bed_quantities;
 }
 
@@ -71,8 +72,9 @@ void describe_probe(Keys& keys, ProbeSpec& probe) {
   keys.whole({"particle", "one particle by its id"}, {0}, probe.particle);
   keys.text({"wall", "forces and torques of the particles on the wall of this name"}, TextRule::name,
             probe.wall);
+  keys.choice({"side", "particles that leave through this open side"}, domain_sides, probe.side);
   keys.mark({"bed", "all particles together"}, probe.bed);
-  keys.exactly_one({"point", "particle", "wall", "bed"});
+  keys.exactly_one({"point", "particle", "wall", "side", "bed"});
   std::optional<std::vector<int>> positions;
   if (!probe.quantities.empty()) {
     positions.emplace();
@@ -136,7 +138,7 @@ void describe_output(Keys& keys, CaseSpec& spec) {
         inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {}, output.lines,
                              describe_line);
         inner.list<ProbeSpec>(
-            {"probes", "values over time at points, of single particles, of walls, of the bed"}, {},
+            {"probes", "values over time at points, of single particles, of walls, of open sides, of the bed"}, {},
             output.probes, describe_probe);
         inner.list<HistogramSpec>({"histograms", "distributions over the particles"}, {}, output.histograms,
                                   describe_histogram);

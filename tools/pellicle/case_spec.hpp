@@ -253,13 +253,14 @@ struct LineSpec {
   WindowSpec average;
 };
 
-/// A time series at a point, of one particle, of a wall, or of the whole bed.
+/// A time series at a point, of one particle, of a wall, of an open side, or of the whole bed.
 struct ProbeSpec {
   std::string where;
   std::string name;
-  std::optional<Vec3> point;        ///< exactly one of the four is set [m]
+  std::optional<Vec3> point;        ///< exactly one of the five is set [m]
   std::optional<Index> particle;    ///< id
   std::optional<std::string> wall;  ///< name
+  std::optional<int> side;          ///< a position in `domain_sides`
   bool bed = false;
   std::vector<std::string> quantities;
   Real every = 1e-3;  ///< [s]

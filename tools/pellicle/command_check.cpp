@@ -153,7 +153,7 @@ void try_to_build(const CaseSpec& spec) {
   try {
     if (!spec.particles.empty()) {
       dem::Engine particles(make_engine_setup(spec, spec.time.particle_step));
-      particles.set_particles(make_particles(spec));
+      particles.set_particles(make_particles(spec, particles.setup().walls));
     }
     if (spec.gas)
       cfd::GasSolver(make_grid(spec.gas->grid, spec.domain), spec.gas->options, spec.gas->boundaries);

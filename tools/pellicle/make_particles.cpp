@@ -1,8 +1,13 @@
 // The particles of a case: lists, and fills of regions.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
+#include "core/key_reader.hpp"
+#include "core/log.hpp"
 #include "dem/fill.hpp"
+#include "dem/obstacles.hpp"
 #include "dem/particles.hpp"
 #include "tools/pellicle/build_case.hpp"
 #include "tools/pellicle/case_checks.hpp"
@@ -19,7 +24,7 @@ namespace {
                   "larger region, or "
                   "fewer particles (wide regions take up to 0.60 with random, 0.52 with lattice, 0.74 with "
                   "hexagonal; narrow "
-                  "ones, and what is there already, take less)",
+                  "ones, and those with walls or particles in them, take less)",
                   fill.where, radii.size(), fit > 0 ? fmt::format(", only {} do", fit) : "",
                   fill_patterns[static_cast<std::size_t>(fill.pattern)].name,
                   volume / dem::region_volume(fill.region())));
@@ -28,8 +33,8 @@ namespace {
 /// Places the fills of a case one region after the other.
 class Filler {
  public:
-  Filler(const CaseSpec& spec, const std::vector<dem::ParticleSeed>& listed)
-      : spec_(spec), seed_(spec.seed), centres_(spec.particles.size()), radii_(spec.particles.size()) {
+  Filler(const CaseSpec& spec, const dem::Obstacles& obstacles, const std::vector<dem::ParticleSeed>& listed)
+      : spec_(spec), obstacles_(obstacles), seed_(spec.seed), centres_(spec.particles.size()), radii_(spec.particles.size()) {
     for (const auto& p : listed) placed_.push_back({p.position, p.radius});
   }
 
@@ -46,7 +51,8 @@ class Filler {
       radii_[i] = draw_radii(spec_, i);
       radii.insert(radii.end(), radii_[i].begin(), radii_[i].end());
     }
-    const auto centres = dem::fill_region(fill.region(), fill.pattern, radii, seed_++, placed_);
+    const auto centres = dem::fill_region(fill.region(), fill.pattern, radii, seed_++, placed_,
+                                          fill_is_fixed(population) ? dem::Obstacles() : obstacles_);
     if (centres.size() < radii.size()) refuse(fill, radii, centres.size());
     auto next = centres.begin();
     for (const std::size_t i : together) {
@@ -66,16 +72,75 @@ class Filler {
   }
 
  private:
+  /// Fixed particles may stand in walls.
+  bool fill_is_fixed(std::size_t population) const { return spec_.particles[population].fixed; }
+
   const CaseSpec& spec_;
+  const dem::Obstacles& obstacles_;
   std::uint64_t seed_;
   std::vector<dem::PlacedSphere> placed_;
   std::vector<std::vector<Vec3>> centres_;
   std::vector<std::vector<Real>> radii_;
 };
 
+/// A listed particle that starts further inside a wall than this share of its radius would be shot out of it.
+constexpr Real deepest_start = 0.1;
+
+std::string text(const Vec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+
+/// Names listed particles that start inside walls; fills keep clear of walls by themselves.
+void check_listed(const CaseSpec& spec, const std::vector<dem::Wall>& walls, const dem::Obstacles& obstacles) {
+  core::InputProblems problems;
+  int id = 0;
+  for (std::size_t population = 0; population < spec.particles.size(); ++population) {
+    const auto& list = spec.particles[population].list;
+    for (std::size_t i = 0; i < list.size(); ++i, ++id) {
+      const ListedParticleSpec& p = list[i];
+      const auto overlap = p.fixed ? std::nullopt : obstacles.deepest(p.position, 0.5 * p.diameter);
+      if (!overlap || overlap->depth <= 1e-3 * p.diameter) continue;
+      const std::string where = spec.where(fmt::format("particles.{}.list.{}.position", population, i));
+      const std::string what = fmt::format(
+          "particle {} of radius {:.4g} m at {} m starts {:.4g} m inside the wall {}", id, 0.5 * p.diameter,
+          text(p.position), overlap->depth, walls[static_cast<std::size_t>(overlap->wall)].name);
+      if (overlap->depth > std::min(deepest_start, spec.contacts.overlap_limit) * 0.5 * p.diameter) {
+        problems.add(where, what + "; a place at least its radius away from every wall");
+      } else {
+        core::log().warn("{}: {}", where, what);
+      }
+    }
+  }
+  problems.throw_if_any();
+}
+
+/// Warns of particles that a closed mesh parts from most of the others.
+void check_closed_meshes(const std::vector<dem::ParticleSeed>& particles, const std::vector<dem::Wall>& walls,
+                         const dem::Obstacles& obstacles) {
+  for (const std::int32_t wall : obstacles.closed_meshes()) {
+    std::vector<bool> within(particles.size());
+    std::size_t inside = 0, all = 0, first = 0;
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+      if (particles[p].fixed) continue;
+      within[p] = obstacles.encloses(wall, particles[p].position);
+      inside += within[p] ? 1 : 0;
+      ++all;
+    }
+    const std::size_t few = std::min(inside, all - inside);
+    if (few == 0 || 2 * few == all) continue;
+    const bool few_inside = few == inside;
+    while (particles[first].fixed || within[first] != few_inside) ++first;
+    core::log().warn(
+        "wall {}: {} of {} particles start {} its closed surface and the others on its other side; the first is "
+        "particle {} of radius {:.4g} m at {} m",
+        walls[static_cast<std::size_t>(wall)].name, few, all, few_inside ? "within" : "outside", first,
+        particles[first].radius, text(particles[first].position));
+  }
+}
+
 }  // namespace
 
-std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec) {
+std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec, const std::vector<dem::Wall>& walls) {
+  const dem::Obstacles obstacles(walls);
+  check_listed(spec, walls, obstacles);
   std::vector<dem::ParticleSeed> particles;
   // Listed particles first, so that fills keep clear of them; ids follow this order.
   for (const PopulationSpec& population : spec.particles) {
@@ -83,13 +148,14 @@ std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec) {
       particles.push_back({p.position, p.velocity, p.spin, 0.5 * p.diameter, population.material, p.fixed});
     }
   }
-  Filler filler(spec, particles);
+  Filler filler(spec, obstacles, particles);
   for (std::size_t i = 0; i < spec.particles.size(); ++i) {
     if (spec.particles[i].fill) filler.place(i);
   }
   for (std::size_t i = 0; i < spec.particles.size(); ++i) {
     if (spec.particles[i].fill) filler.append(i, particles);
   }
+  check_closed_meshes(particles, walls, obstacles);
   return particles;
 }
 

@@ -37,7 +37,8 @@ constexpr std::array<core::ModelInfo, N + M> join(const std::array<core::ModelIn
   return joined;
 }
 constexpr auto line_quantity_list = join(particle_quantities, gas_quantities);
-constexpr auto probe_quantity_list = join(join(line_quantity_list, bed_quantities), wall_quantities);
+constexpr auto probe_quantity_list =
+    join(join(join(line_quantity_list, bed_quantities), wall_quantities), side_quantities);
 
 }  // namespace
 
@@ -80,6 +81,7 @@ const std::vector<ModelFamily>& quantity_families() {
       {"quantities.gas", "Of the gas, for lines and probes of a point", gas_quantities},
       {"quantities.bed", "Of the whole bed, for probes", bed_quantities},
       {"quantities.wall", "Of a wall, for probes; means over the time since the row before", wall_quantities},
+      {"quantities.side", "Of an open side, for probes", side_quantities},
   };
   return families;
 }

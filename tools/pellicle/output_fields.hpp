@@ -92,6 +92,14 @@ inline constexpr std::array<core::ModelInfo, 7> wall_quantities{{
     {"wall_contacts", "contacts of particles with the wall at the moment of the row [-]"},
 }};
 
+/// Columns of a probe of a side through which particles leave.
+inline constexpr std::array<core::ModelInfo, 4> side_quantities{{
+    {"outflow_mass_rate", "mass of the particles that left a second, since the row before [kg/s]"},
+    {"outflow_rate", "particles that left a second, since the row before [1/s]"},
+    {"left_mass", "mass of all that have left, settling included [kg]"},
+    {"left_particles", "number of all that have left, settling included [-]"},
+}};
+
 /// All quantities a line may show: particle_quantities, then gas_quantities.
 std::string line_quantity_names();
 

@@ -31,6 +31,7 @@ core::ModelList known_quantities(const ProbeSpec& spec) {
   if (spec.bed) return bed_quantities;
   if (spec.particle) return particle_quantities;
   if (spec.wall) return wall_quantities;
+  if (spec.side) return side_quantities;
   return gas_quantities;
 }
 
@@ -59,6 +60,15 @@ Real wall_quantity(int quantity, const WallFigures& now, const WallFigures& befo
   const Vec3 given =
       quantity < 3 ? now.impulse - before.impulse : now.angular_impulse - before.angular_impulse;
   return interval > 0 ? given[quantity % 3] / interval : 0;
+}
+
+/// Entry of side_quantities; rates are means over `interval`, of which there is none at the first row.
+Real side_quantity(int quantity, const dem::SideTotals& now, const dem::SideTotals& before, Real interval) {
+  if (quantity == 2) return now.mass;
+  if (quantity == 3) return static_cast<Real>(now.particles);
+  if (!(interval > 0)) return 0;
+  return (quantity == 0 ? now.mass - before.mass : static_cast<Real>(now.particles - before.particles)) /
+         interval;
 }
 
 const WallFigures& find_wall(const OutputState& state, const std::string& name) {
@@ -92,6 +102,7 @@ Probes::Probes(const std::vector<ProbeSpec>& specs, core::TimeControl& time, con
                        cell,
                        core::CsvSeries(folder.csv("probes", spec.name), probe_header(spec), resume_time),
                        {},
+                       {},
                        0});
   }
 }
@@ -117,6 +128,13 @@ void Probes::append(Probe& probe, const OutputState& state) {
       row.push_back(wall_quantity(quantity, now, probe.before, state.time - probe.time_before));
     probe.before = now;
     probe.time_before = state.time;
+  } else if (probe.spec.side) {
+    const dem::SideTotals now =
+        state.sides != nullptr ? (*state.sides)[static_cast<std::size_t>(*probe.spec.side)] : dem::SideTotals{};
+    for (const int quantity : probe.quantities)
+      row.push_back(side_quantity(quantity, now, probe.left_before, state.time - probe.time_before));
+    probe.left_before = now;
+    probe.time_before = state.time;
   } else {
     for (const int quantity : probe.quantities) row.push_back(gas_quantity(*state.gas, quantity, probe.cell));
   }
@@ -135,9 +153,14 @@ void Probes::flush() {
 
 void Probes::save(core::CheckpointWriter& checkpoint) const {
   for (const auto& probe : probes_) {
-    if (!probe.spec.wall) continue;
+    if (!probe.spec.wall && !probe.spec.side) continue;
     const std::string path = "probes/" + probe.spec.name;
     checkpoint.write(path + "/time", probe.time_before);
+    if (probe.spec.side) {
+      checkpoint.write(path + "/left_mass", probe.left_before.mass);
+      checkpoint.write(path + "/left_particles", probe.left_before.particles);
+      continue;
+    }
     checkpoint.write(path + "/impulse", probe.before.impulse);
     checkpoint.write(path + "/angular_impulse", probe.before.angular_impulse);
   }
@@ -147,8 +170,13 @@ void Probes::load(const core::CheckpointReader& checkpoint) {
   for (auto& probe : probes_) {
     const std::string path = "probes/" + probe.spec.name;
     // The first row of a probe that is new with this run is a mean since t = 0.
-    if (!probe.spec.wall || !checkpoint.has(path + "/time")) continue;
+    const char* const what = probe.spec.wall ? "/impulse" : "/left_mass";
+    if ((!probe.spec.wall && !probe.spec.side) || !checkpoint.has(path + what)) continue;
     probe.time_before = checkpoint.read_double(path + "/time");
+    if (probe.spec.side) {
+      probe.left_before = {checkpoint.read_int64(path + "/left_particles"), checkpoint.read_double(path + what)};
+      continue;
+    }
     probe.before.impulse = checkpoint.read_vec3(path + "/impulse");
     probe.before.angular_impulse = checkpoint.read_vec3(path + "/angular_impulse");
   }

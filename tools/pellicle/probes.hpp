@@ -1,5 +1,5 @@
-// Time series: at a point of the gas, of one particle, of a wall, of the whole bed (probes/NAME.csv), and distributions of a
-// particle quantity (histograms/NAME.csv).
+// Time series: at a point of the gas, of one particle, of a wall, of an open side, of the whole bed (probes/NAME.csv), and
+// distributions of a particle quantity (histograms/NAME.csv).
 #pragma once
 
 #include <optional>
@@ -27,6 +27,7 @@ struct OutputState {
   const GasFields* gas = nullptr;             ///< null without gas
   ContactFigures contacts{};
   const std::vector<WallFigures>* walls = nullptr;  ///< null without particles
+  const SideFigures* sides = nullptr;               ///< null without particles
 
   /// Empty without particles.
   const HostParticles& host_particles() const;
@@ -44,7 +45,7 @@ class Probes {
   void sample(const OutputState& state);
   void flush();
 
-  /// What walls had received when their last rows were written.
+  /// What walls had received, and what had left, when their last rows were written.
   void save(core::CheckpointWriter& checkpoint) const;
   void load(const core::CheckpointReader& checkpoint);
 
@@ -55,8 +56,9 @@ class Probes {
     std::vector<int> quantities;  ///< positions in the list of the probe's kind
     Index cell = 0;               ///< of a point
     core::CsvSeries file;
-    WallFigures before{};  ///< at the last row, of a wall
-    Real time_before = 0;  ///< [s]
+    WallFigures before{};           ///< at the last row, of a wall
+    dem::SideTotals left_before{};  ///< at the last row, of a side
+    Real time_before = 0;           ///< [s]
   };
   void append(Probe& probe, const OutputState& state);
 

@@ -59,7 +59,7 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
 }
 
 void Simulation::start() {
-  if (particles_) particles_->set_particles(make_particles(spec_));
+  if (particles_) particles_->set_particles(make_particles(spec_, particles_->setup().walls));
   folder_.emplace(options_.output_folder,
                   options_.overwrite ? ResultsFolder::Existing::overwrite : ResultsFolder::Existing::refuse);
   folder_->write_case(options_.case_yaml_text);
@@ -105,6 +105,8 @@ void Simulation::resume() {
   // Wall times are no part of the state: they come from the summary of the run that is resumed.
   const Summary before = read_summary(folder_->summary());
   wall_before_ = before.wall_seconds;
+  setup_before_ = before.setup_seconds;
+  summary_.settling_seconds = before.settling_seconds;
   for (int part = 0; part < core::part_count; ++part) {
     timers_.add(static_cast<Part>(part), before.wall_by_part[static_cast<std::size_t>(part)]);
   }
@@ -115,6 +117,7 @@ int Simulation::run() {
   for (const std::string& warning : spec_.warnings) core::log().warn("{}", warning);
   for (const std::string& message : time_.messages()) core::log().warn("{}", message);
   wall_begin_ = core::wall_clock();
+  summary_.setup_seconds = setup_before_ + wall_begin_ - made_;
   core::Progress progress(time_.time(), time_.end());
   try {
     if (!options_.resume) {
@@ -246,6 +249,7 @@ void Simulation::move_gas() {
 
 /// t = 0: the particles have settled, the gas begins around them, and the ledger opens.
 void Simulation::release_gas() {
+  if (wall_begin_ > 0) summary_.settling_seconds = wall_before_ + core::wall_clock() - wall_begin_;
   if (exchange_) {
     exchange_->initialise(particles_->particles());
     gas_->initialise(spec_.gas->velocity, exchange_->exchange().void_fraction);
@@ -358,6 +362,7 @@ void Simulation::write_outputs(bool last) {
   GasFields fields;
   if (particles_) state.particles = &particles_->particles();
   if (particles_) state.walls = &walls_;
+  if (particles_) state.sides = &particles_->left_by_side();
   if (gas_) {
     const cfd::GasState& gas = gas_->state();
     fields = {&gas_->grid(),     gas.velocity,          gas.pressure,
@@ -412,14 +417,17 @@ void Simulation::write_summary(const std::string& status, const std::string& mes
   summary_.program_commit = commit();
   summary_.simulated_seconds = std::max<Real>(time_.time(), 0);
   summary_.wall_seconds = wall_before_ + core::wall_clock() - wall_begin_;
+  if (time_.settling()) summary_.settling_seconds = summary_.wall_seconds;
   summary_.set_times(timers_);
   summary_.set_defects(ledger_);
   summary_.threads = Host().concurrency();
   summary_.gas_steps = gas_ ? std::max<std::int64_t>(time_.step(), 0) : 0;
   if (particles_) {
     summary_.particles = particles_->particles().count;
+    summary_.engine_bytes = static_cast<std::int64_t>(particles_->bytes());
     summary_.contacts_per_particle = contacts_per_particle();
     summary_.particles_left_through_open_sides = particles_->left_through_open_sides();
+    summary_.left_by_side = particles_->left_by_side();
     summary_.walls = walls_;
     summary_.mass_left = particles_->left_mass();
     summary_.particles_fed = 0;

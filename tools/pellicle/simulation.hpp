@@ -99,7 +99,9 @@ class Simulation {
   Real settled_volume_time_ = 0;             // [m3 s]
   std::int64_t quiet_steps_ = 0;             // since the particles moved faster than time.settle.speed
   Real settled_left_mass_ = 0;               // [kg]
+  double made_ = core::wall_clock();         // when this process began to set up [s]
   double wall_begin_ = 0, wall_before_ = 0;  // of this process, and of those before it [s]
+  double setup_before_ = 0;                  // of the processes before this one [s]
 };
 
 }  // namespace pellicle::tools

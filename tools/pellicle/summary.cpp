@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/files.hpp"
 #include "core/progress.hpp"
+#include "tools/pellicle/model_families.hpp"
 
 namespace pellicle::tools {
 
@@ -54,7 +55,9 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["title"] = summary.title;
   json["program"] = {{"version", summary.program_version}, {"commit", summary.program_commit}};
   json["simulated_seconds"] = summary.simulated_seconds;
+  json["setup_seconds"] = summary.setup_seconds;
   json["wall_seconds"] = summary.wall_seconds;
+  json["settling_seconds"] = summary.settling_seconds;
   json["wall_seconds_per_simulated_second"] = summary.wall_seconds_per_simulated_second();
   for (std::size_t part = 0; part < summary.wall_by_part.size(); ++part) {
     json["wall_by_part"][std::string(core::part_names[part])] = summary.wall_by_part[part];
@@ -69,6 +72,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["largest_overlap_ratio"] = summary.largest_overlap_ratio;
   json["largest_impact_speed"] = summary.largest_impact_speed;
   json["peak_memory_bytes"] = summary.peak_memory_bytes;
+  json["engine_bytes"] = summary.engine_bytes;
   for (std::size_t q = 0; q < summary.defects.size(); ++q) {
     json["defects"][std::string(core::conserved_names[q])] = summary.defects[q];
   }
@@ -86,6 +90,13 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
                                 {"contacts", wall.contacts}};
   }
   json["mass_left"] = summary.mass_left;
+  json["left_by_side"] = Json::object();
+  for (std::size_t side = 0; side < summary.left_by_side.size(); ++side) {
+    const dem::SideTotals& left = summary.left_by_side[side];
+    if (left.particles == 0) continue;
+    json["left_by_side"][std::string(domain_sides[side].name)] = {{"particles", left.particles},
+                                                                  {"mass", left.mass}};
+  }
   json["particles_fed"] = summary.particles_fed;
   json["mass_fed"] = summary.mass_fed;
   core::write_file_atomically(path, json.dump(2) + "\n");
@@ -101,7 +112,9 @@ Summary read_summary(const std::filesystem::path& path) {
     summary.program_version = json.at("program").at("version");
     summary.program_commit = json.at("program").at("commit");
     summary.simulated_seconds = json.at("simulated_seconds");
+    summary.setup_seconds = json.value("setup_seconds", 0.0);
     summary.wall_seconds = json.at("wall_seconds");
+    summary.settling_seconds = json.value("settling_seconds", 0.0);
     for (std::size_t part = 0; part < summary.wall_by_part.size(); ++part) {
       summary.wall_by_part[part] = json.at("wall_by_part").at(std::string(core::part_names[part]));
     }
@@ -114,6 +127,7 @@ Summary read_summary(const std::filesystem::path& path) {
     summary.largest_overlap_ratio = json.at("largest_overlap_ratio");
     summary.largest_impact_speed = json.at("largest_impact_speed");
     summary.peak_memory_bytes = json.at("peak_memory_bytes");
+    summary.engine_bytes = json.value("engine_bytes", std::int64_t{0});
     for (std::size_t q = 0; q < summary.defects.size(); ++q) {
       // Not-a-number is null in JSON.
       const auto& defect = json.at("defects").at(std::string(core::conserved_names[q]));
@@ -132,6 +146,12 @@ Summary read_summary(const std::filesystem::path& path) {
       }
     }
     summary.mass_left = json.at("mass_left");
+    for (std::size_t side = 0; json.contains("left_by_side") && side < summary.left_by_side.size(); ++side) {
+      const std::string name(domain_sides[side].name);
+      if (!json.at("left_by_side").contains(name)) continue;
+      const auto& left = json.at("left_by_side").at(name);
+      summary.left_by_side[side] = {left.at("particles"), left.at("mass")};
+    }
     summary.particles_fed = json.at("particles_fed");
     summary.mass_fed = json.at("mass_fed");
     return summary;
@@ -148,9 +168,13 @@ std::string report_text(const Summary& summary) {
   line("title", summary.title);
   line("status", summary.message.empty() ? summary.status : summary.status + ": " + summary.message);
   line("simulated", fmt::format("{:.6g} s in {} gas steps", summary.simulated_seconds, summary.gas_steps));
+  line("set-up", fmt::format("{:.1f} s", summary.setup_seconds));
   line("wall time", fmt::format("{:.1f} s ({}), {:.4g} s per simulated second, {} threads",
                                 summary.wall_seconds, core::format_duration(summary.wall_seconds),
                                 summary.wall_seconds_per_simulated_second(), summary.threads));
+  if (summary.settling_seconds > 0) {
+    line("  of it settling", fmt::format("{:.1f} s", summary.settling_seconds));
+  }
   for (std::size_t part = 0; part < summary.wall_by_part.size(); ++part) {
     const double seconds = summary.wall_by_part[part];
     if (seconds <= 0) continue;
@@ -168,6 +192,12 @@ std::string report_text(const Summary& summary) {
     if (summary.particles_left_through_open_sides > 0) {
       line("left through open sides",
            fmt::format("{}, {:.4g} kg", summary.particles_left_through_open_sides, summary.mass_left));
+      for (std::size_t side = 0; side < summary.left_by_side.size(); ++side) {
+        const dem::SideTotals& left = summary.left_by_side[side];
+        if (left.particles == 0) continue;
+        line(fmt::format("  {}", domain_sides[side].name),
+             fmt::format("{}, {:.4g} kg", left.particles, left.mass));
+      }
     }
     if (summary.particles_fed > 0) {
       line("fed", fmt::format("{}, {:.4g} kg", summary.particles_fed, summary.mass_fed));
@@ -178,6 +208,11 @@ std::string report_text(const Summary& summary) {
     line(fmt::format("defect of {}", core::conserved_names[q]), fmt::format("{:.3g}", summary.defects[q]));
   }
   line("peak memory", fmt::format("{:.1f} MB", static_cast<double>(summary.peak_memory_bytes) / 1e6));
+  if (summary.particles > 0) {
+    line("  of it the particle engine",
+         fmt::format("{:.1f} MB, {:.0f} bytes a particle", static_cast<double>(summary.engine_bytes) / 1e6,
+                     static_cast<double>(summary.engine_bytes) / static_cast<double>(summary.particles)));
+  }
   line("program", fmt::format("pellicle {} ({})", summary.program_version, summary.program_commit));
   return text;
 }

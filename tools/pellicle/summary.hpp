@@ -21,7 +21,9 @@ struct Summary {
   std::string message;             ///< of a failed run
   std::string title, program_version, program_commit;
   double simulated_seconds = 0;
-  double wall_seconds = 0;  ///< of the time loop, over all resumes
+  double setup_seconds = 0;     ///< before the time loop: walls read, particles placed; over all resumes
+  double wall_seconds = 0;      ///< of the time loop, over all resumes
+  double settling_seconds = 0;  ///< of these, before t = 0
   std::array<double, core::part_count> wall_by_part{};
   int threads = 0;
   std::int64_t particles = 0;
@@ -31,12 +33,14 @@ struct Summary {
   double largest_overlap_ratio = 0;  ///< overlap / radius
   double largest_impact_speed = 0;   ///< [m/s]
   std::int64_t peak_memory_bytes = 0;
+  std::int64_t engine_bytes = 0;  ///< of particles, neighbours and contacts alone
   std::array<double, core::conserved_count> defects{};
   double instantaneous_momentum_defect =
       0;  ///< momentum given to the particles and not yet to the gas, over gross
   std::int64_t lost_particles = 0;
   std::int64_t particles_left_through_open_sides = 0;
-  double mass_left = 0;  ///< with them [kg]
+  double mass_left = 0;        ///< with them [kg]
+  SideFigures left_by_side{};  ///< the same for each side
   std::int64_t particles_fed = 0;
   double mass_fed = 0;  ///< [kg]
   std::int64_t gas_steps = 0;

@@ -1,11 +1,13 @@
-// What particles do to walls, for outputs.
+// What particles do to walls, and what leaves through open sides, for outputs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
 #include "core/types.hpp"
 #include "core/vector.hpp"
+#include "dem/side_totals.hpp"
 
 namespace pellicle::tools {
 
@@ -16,5 +18,8 @@ struct WallFigures {
   Vec3 angular_impulse{};  ///< about the wall's torque_about [N m s]
   std::int64_t contacts = 0;
 };
+
+/// What has left through each side since the start, settling included; in the order of `domain_sides`.
+using SideFigures = std::array<dem::SideTotals, dem::domain_side_count>;
 
 }  // namespace pellicle::tools

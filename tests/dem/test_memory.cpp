@@ -1,0 +1,49 @@
+// How much memory the engine takes for a particle.
+#include <gtest/gtest.h>
+
+#include "dem/fill.hpp"
+#include "tests/dem/bed.hpp"
+
+namespace pellicle::dem {
+namespace {
+
+/// Bytes a particle of a settling bed of spheres whose radii are spread from 1 - spread to 1 + spread of 1 mm.
+Real bytes_per_particle(Real spread, bool remembers) {
+  const std::size_t count = 30'000;
+  auto setup = tests::glass_setup({0.06, 0.06, 0.10}, 1e-5);
+  setup.gravity = {0, 0, -9.81};
+  if (remembers) tests::let_contacts_remember(setup);
+  tests::add_box_walls(setup);
+  std::vector<Real> radii;
+  for (std::size_t p = 0; p < count; ++p)
+    radii.push_back(0.001 * (1 + spread * tests::random_vector(1, static_cast<int>(p)).x));
+  const auto centres = fill_region(Box{{0, 0, 0}, {0.06, 0.06, 0.0635}}, FillPattern::random, radii, 1);
+  std::vector<ParticleSeed> seeds;
+  for (std::size_t p = 0; p < centres.size(); ++p)
+    seeds.push_back({centres[p], {}, {}, radii[p], 0, false});
+  Engine engine(setup);
+  engine.set_particles(seeds);
+  for (int k = 0; k < 40; ++k) {
+    engine.prepare_outer_step();
+    tests::advance(engine, 10);
+  }
+  EXPECT_EQ(engine.particles().count, static_cast<Index>(count));
+  // Half of the list's entries, since each particle has all of its neighbours in it.
+  EXPECT_GT(engine.neighbours_per_particle(), 7) << "no packed bed";
+  return static_cast<Real>(engine.bytes()) / static_cast<Real>(count);
+}
+
+TEST(Memory, AParticleTakesAtMost300BytesWithAllItsNeighbours) {
+  for (const Real spread : {0.0, 0.33}) {
+    const Real bytes = bytes_per_particle(spread, false);
+    EXPECT_LE(bytes, 300);
+    EXPECT_GT(bytes, 160);  // position, velocity, spin and forces alone
+    RecordProperty("bytes_per_particle_spread_" + std::to_string(static_cast<int>(100 * spread)),
+                   std::to_string(bytes));
+  }
+}
+
+TEST(Memory, SpringsOfContactsComeOnTop) { EXPECT_GT(bytes_per_particle(0, true), bytes_per_particle(0, false) + 100); }
+
+}  // namespace
+}  // namespace pellicle::dem
