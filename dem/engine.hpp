@@ -193,7 +193,7 @@ class Engine {
   std::int32_t next_id_ = 0;
   std::int64_t left_ = 0;
   std::array<SideTotals, domain_side_count> left_by_side_{};
-  DeviceArray<SideTotals> leaving_;  // of one outer step
+  DeviceArray<SideTotals> leaving_;        // of one outer step
   Real entered_mass_ = 0, left_mass_ = 0;  // [kg]
   Vec3 entered_momentum_{};
   Vec3 left_momentum_{};

@@ -75,7 +75,8 @@ Index rank_staying(const Domain& domain, const Particles& particles, const Devic
 void sum_leaving(const Domain& domain, const Particles& particles, const DeviceArray<std::int32_t>& order,
                  Index staying, const DeviceArray<SideTotals>& sides) {
   Kokkos::parallel_for(
-      "dem::engine_open_sides::sum_leaving", DeviceRange(0, domain_side_count), KOKKOS_LAMBDA(const Index side) {
+      "dem::engine_open_sides::sum_leaving", DeviceRange(0, domain_side_count),
+      KOKKOS_LAMBDA(const Index side) {
         SideTotals sum;
         for (Index k = particles.count - 1; k >= staying; --k) {
           const Index p = order(k);

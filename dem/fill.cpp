@@ -251,8 +251,7 @@ std::vector<Vec3> fill_region(const FillRegion& region, FillPattern pattern, con
   OverlapGrid grid(box, 2 * reach, radii.size() + present.size());
   for (const auto& s : present) grid.add(s);
   if (pattern == FillPattern::lattice) return fill_lattice(room, box, radii, largest, grid, obstacles);
-  if (pattern == FillPattern::hexagonal)
-    return fill_hexagonal(room, box, radii, largest, grid, obstacles);
+  if (pattern == FillPattern::hexagonal) return fill_hexagonal(room, box, radii, largest, grid, obstacles);
   Real volume = 0;
   for (const Real r : radii) volume += sphere_volume(r);
   std::vector<Vec3> some;

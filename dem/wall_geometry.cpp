@@ -11,7 +11,8 @@ namespace {
 
 template <class Space, class T>
 Kokkos::View<T*, Space> copy_to(const char* label, const std::vector<T>& values) {
-  Kokkos::View<T*, Space> array(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), values.size());
+  Kokkos::View<T*, Space> array(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
+                                values.size());
   const auto host = Kokkos::create_mirror_view(array);
   std::copy(values.begin(), values.end(), host.data());
   Kokkos::deep_copy(array, host);

@@ -98,8 +98,8 @@ void update_poses(const WallGeometry& geometry, Real time);
 /// Calls `visit(s)` for every triangle of a mesh whose distance from the point c of the wall's frame is below `reach`,
 /// each once, until it returns true; says whether it did.
 template <class Space, class Visit>
-KOKKOS_INLINE_FUNCTION bool visit_triangles(const BasicWallGeometry<Space>& geometry, const MeshGrid& grid, const Vec3& c,
-                                            Real reach, const Visit& visit) {
+KOKKOS_INLINE_FUNCTION bool visit_triangles(const BasicWallGeometry<Space>& geometry, const MeshGrid& grid,
+                                            const Vec3& c, Real reach, const Visit& visit) {
   Index3 low, high;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(c[axis] + reach >= grid.min[axis] && c[axis] - reach <= grid.max[axis])) return false;

@@ -19,8 +19,7 @@ Real bytes_per_particle(Real spread, bool remembers) {
     radii.push_back(0.001 * (1 + spread * tests::random_vector(1, static_cast<int>(p)).x));
   const auto centres = fill_region(Box{{0, 0, 0}, {0.06, 0.06, 0.0635}}, FillPattern::random, radii, 1);
   std::vector<ParticleSeed> seeds;
-  for (std::size_t p = 0; p < centres.size(); ++p)
-    seeds.push_back({centres[p], {}, {}, radii[p], 0, false});
+  for (std::size_t p = 0; p < centres.size(); ++p) seeds.push_back({centres[p], {}, {}, radii[p], 0, false});
   Engine engine(setup);
   engine.set_particles(seeds);
   for (int k = 0; k < 40; ++k) {
@@ -43,7 +42,9 @@ TEST(Memory, AParticleTakesAtMost300BytesWithAllItsNeighbours) {
   }
 }
 
-TEST(Memory, SpringsOfContactsComeOnTop) { EXPECT_GT(bytes_per_particle(0, true), bytes_per_particle(0, false) + 100); }
+TEST(Memory, SpringsOfContactsComeOnTop) {
+  EXPECT_GT(bytes_per_particle(0, true), bytes_per_particle(0, false) + 100);
+}
 
 }  // namespace
 }  // namespace pellicle::dem

@@ -35,7 +35,8 @@ Wall mesh_of(const std::vector<TriangleShape>& triangles) {
 }
 
 void expect_overlap(const Wall& wall, const Vec3& centre, Real radius, Real depth, const Vec3& out) {
-  const auto overlap = Obstacles({PlaneWall{"other", {0, 0, -9}, {0, 0, 1}, {}, 0}, wall}).deepest(centre, radius);
+  const auto overlap =
+      Obstacles({PlaneWall{"other", {0, 0, -9}, {0, 0, 1}, {}, 0}, wall}).deepest(centre, radius);
   ASSERT_TRUE(overlap) << "nothing overlaps";
   EXPECT_EQ(overlap->wall, 1);
   EXPECT_NEAR(overlap->depth, depth, 1e-7);
@@ -79,13 +80,15 @@ TEST(Obstacles, MeshesArePartedIntoWithinAndOutside) {
   int within = 0;
   for (int n = 0; n < 4000; ++n) {
     const Vec3 x = 0.1 * core::random_uniform3(5, core::Purpose::test, 0, n);
-    const bool expected = x.x > low.x && x.x < high.x && x.y > low.y && x.y < high.y && x.z > low.z && x.z < high.z;
+    const bool expected =
+        x.x > low.x && x.x < high.x && x.y > low.y && x.y < high.y && x.z > low.z && x.z < high.z;
     EXPECT_EQ(box.encloses(0, x), expected) << x.x << " " << x.y << " " << x.z;
     within += expected ? 1 : 0;
   }
   EXPECT_GT(within, 50);
   // Straight below corners, edges and the diagonals of the sides.
-  for (const Vec3& x : {low, high, Vec3{0.035, 0.05, 0}, Vec3{0.02, 0.05, 0}, Vec3{0.03, 0.03 + 0.04 / 3, 0}}) {
+  for (const Vec3& x :
+       {low, high, Vec3{0.035, 0.05, 0}, Vec3{0.02, 0.05, 0}, Vec3{0.03, 0.03 + 0.04 / 3, 0}}) {
     EXPECT_FALSE(box.encloses(0, {x.x, x.y, 0.001}));
     EXPECT_FALSE(box.encloses(0, {x.x, x.y, 0.099}));
   }
@@ -93,7 +96,8 @@ TEST(Obstacles, MeshesArePartedIntoWithinAndOutside) {
   // An octahedron: every side is slanted.
   std::vector<TriangleShape> sides;
   for (int s = 0; s < 8; ++s) {
-    const Vec3 a{(s & 1) != 0 ? 1.0 : -1.0, 0, 0}, b{0, (s & 2) != 0 ? 1.0 : -1.0, 0}, c{0, 0, (s & 4) != 0 ? 1.0 : -1.0};
+    const Vec3 a{(s & 1) != 0 ? 1.0 : -1.0, 0, 0}, b{0, (s & 2) != 0 ? 1.0 : -1.0, 0},
+        c{0, 0, (s & 4) != 0 ? 1.0 : -1.0};
     const bool outwards = dot(cross(b - a, c - a), a + b + c) > 0;
     sides.push_back(outwards ? TriangleShape{a, b, c} : TriangleShape{a, c, b});
   }

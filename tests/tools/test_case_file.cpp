@@ -445,9 +445,10 @@ TEST(CaseErrors, Outputs) {
             "--set: output.probes.centre.quantities: particle_speed does not fit this kind of probe; ga");
   EXPECT_EQ(bed_errors("output.probes.bead.particle=999").substr(0, 70),
             "--set: output.probes.bead.particle: there is no particle 999; 0 to 498");
-  EXPECT_EQ(bed_errors("output.probes.out.side=bottom"),
-            "--set: output.probes.out.side: nothing can leave through bottom; a side that is named in open of "
-            "the box of walls");
+  EXPECT_EQ(
+      bed_errors("output.probes.out.side=bottom"),
+      "--set: output.probes.out.side: nothing can leave through bottom; a side that is named in open of "
+      "the box of walls");
   EXPECT_EQ(bed_errors("output.histograms.speeds.max=-1"),
             "--set: output.histograms.speeds.max: it is not above min; a larger number");
   EXPECT_EQ(pair_errors("output.probes=[{name: p, point: [0.5, 0.5, 0.5]}]"),

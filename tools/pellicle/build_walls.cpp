@@ -55,7 +55,8 @@ void check_size(const CaseSpec& spec, const WallSpec& wall, const dem::MeshRepor
   if (!apart && !tiny && size <= 50 * domain) return;
   const auto text = [](const Vec3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x, v.y, v.z); };
   throw std::invalid_argument(fmt::format(
-      "with unit {} it reaches from {} to {} m, which is {}; coordinates that fit the domain from {} to {} m, "
+      "with unit {} it reaches from {} to {} m, which is {}; coordinates that fit the domain from {} to {} "
+      "m, "
       "or another unit",
       length_units[static_cast<std::size_t>(wall.unit.value_or(0))].name, text(report.min), text(report.max),
       tiny    ? fmt::format("smaller than a particle of {:.4g} m", particle)

@@ -274,7 +274,8 @@ class Checker {
     const auto left_out = [&](const WallSpec& w) {
       return std::find(w.open.begin(), w.open.end(), side) != w.open.end();
     };
-    const bool boxed = std::any_of(spec_.walls.begin(), spec_.walls.end(), [](const WallSpec& w) { return w.box; });
+    const bool boxed =
+        std::any_of(spec_.walls.begin(), spec_.walls.end(), [](const WallSpec& w) { return w.box; });
     return !periodic(side) && (!boxed || std::any_of(spec_.walls.begin(), spec_.walls.end(), left_out));
   }
 

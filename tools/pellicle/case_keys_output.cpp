@@ -138,8 +138,9 @@ void describe_output(Keys& keys, CaseSpec& spec) {
         inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {}, output.lines,
                              describe_line);
         inner.list<ProbeSpec>(
-            {"probes", "values over time at points, of single particles, of walls, of open sides, of the bed"}, {},
-            output.probes, describe_probe);
+            {"probes",
+             "values over time at points, of single particles, of walls, of open sides, of the bed"},
+            {}, output.probes, describe_probe);
         inner.list<HistogramSpec>({"histograms", "distributions over the particles"}, {}, output.histograms,
                                   describe_histogram);
       });

@@ -34,7 +34,11 @@ namespace {
 class Filler {
  public:
   Filler(const CaseSpec& spec, const dem::Obstacles& obstacles, const std::vector<dem::ParticleSeed>& listed)
-      : spec_(spec), obstacles_(obstacles), seed_(spec.seed), centres_(spec.particles.size()), radii_(spec.particles.size()) {
+      : spec_(spec),
+        obstacles_(obstacles),
+        seed_(spec.seed),
+        centres_(spec.particles.size()),
+        radii_(spec.particles.size()) {
     for (const auto& p : listed) placed_.push_back({p.position, p.radius});
   }
 
@@ -89,7 +93,8 @@ constexpr Real deepest_start = 0.1;
 std::string text(const Vec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
 
 /// Names listed particles that start inside walls; fills keep clear of walls by themselves.
-void check_listed(const CaseSpec& spec, const std::vector<dem::Wall>& walls, const dem::Obstacles& obstacles) {
+void check_listed(const CaseSpec& spec, const std::vector<dem::Wall>& walls,
+                  const dem::Obstacles& obstacles) {
   core::InputProblems problems;
   int id = 0;
   for (std::size_t population = 0; population < spec.particles.size(); ++population) {
@@ -129,7 +134,8 @@ void check_closed_meshes(const std::vector<dem::ParticleSeed>& particles, const 
     const bool few_inside = few == inside;
     while (particles[first].fixed || within[first] != few_inside) ++first;
     core::log().warn(
-        "wall {}: {} of {} particles start {} its closed surface and the others on its other side; the first is "
+        "wall {}: {} of {} particles start {} its closed surface and the others on its other side; the first "
+        "is "
         "particle {} of radius {:.4g} m at {} m",
         walls[static_cast<std::size_t>(wall)].name, few, all, few_inside ? "within" : "outside", first,
         particles[first].radius, text(particles[first].position));

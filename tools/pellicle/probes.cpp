@@ -129,8 +129,9 @@ void Probes::append(Probe& probe, const OutputState& state) {
     probe.before = now;
     probe.time_before = state.time;
   } else if (probe.spec.side) {
-    const dem::SideTotals now =
-        state.sides != nullptr ? (*state.sides)[static_cast<std::size_t>(*probe.spec.side)] : dem::SideTotals{};
+    const dem::SideTotals now = state.sides != nullptr
+                                    ? (*state.sides)[static_cast<std::size_t>(*probe.spec.side)]
+                                    : dem::SideTotals{};
     for (const int quantity : probe.quantities)
       row.push_back(side_quantity(quantity, now, probe.left_before, state.time - probe.time_before));
     probe.left_before = now;
@@ -174,7 +175,8 @@ void Probes::load(const core::CheckpointReader& checkpoint) {
     if ((!probe.spec.wall && !probe.spec.side) || !checkpoint.has(path + what)) continue;
     probe.time_before = checkpoint.read_double(path + "/time");
     if (probe.spec.side) {
-      probe.left_before = {checkpoint.read_int64(path + "/left_particles"), checkpoint.read_double(path + what)};
+      probe.left_before = {checkpoint.read_int64(path + "/left_particles"),
+                           checkpoint.read_double(path + what)};
       continue;
     }
     probe.before.impulse = checkpoint.read_vec3(path + "/impulse");
