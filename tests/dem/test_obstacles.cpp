@@ -144,7 +144,7 @@ TEST(Fill, KeepsClearOfWallsWithinItsRegion) {
   for (const Wall& insert : {block(low, high), mesh_of(tests::box_triangles(low, high))}) {
     for (const auto& [pattern, count] :
          {std::pair(FillPattern::random, 800), std::pair(FillPattern::random, 3000),
-          std::pair(FillPattern::lattice, 1500), std::pair(FillPattern::hexagonal, 1500)}) {
+          std::pair(FillPattern::lattice, 2400), std::pair(FillPattern::hexagonal, 2400)}) {
       const std::vector<Real> radii(static_cast<std::size_t>(count), 0.0015);
       // Without the wall the same fill has spheres where it would be.
       const auto free = fill_region(region, pattern, radii, 3);
