@@ -406,7 +406,7 @@ StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
   const GasSolverOptions& options = s.options.solver;
   StepReport report;
   s.take_exchange(exchange, dt);
-  s.momentum.prepare(s.fields);
+  s.momentum.prepare(s.fields, dt);
   s.faces.prepare(s.fields);
   // SIMPLEC: fluxes first, then velocities that satisfy the momentum balance with these very fluxes and this
   // pressure, so that a step ends with both balances closed.

@@ -38,6 +38,7 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
       correction_(geometry),
       conductance_(make_face_field(geometry.stencil, "cfd::momentum::conductance")),
       tangential_conductance_(make_face_field(geometry.stencil, "cfd::momentum::tangential_conductance")) {
+  wall_stress_.assign(boundaries.pieces.size(), 0);
   const Index n = geometry.stencil.cells();
   for (std::size_t d = 0; d < 6; ++d) {
     near_[d] = make_array("cfd::momentum::near" + std::to_string(d), n);
@@ -54,7 +55,7 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
   t_ = make_array("cfd::momentum::t", 3 * n);
 }
 
-void MomentumEquation::prepare(const GasFields& fields) {
+void MomentumEquation::prepare(const GasFields& fields, Real dt) {
   const char* labels[] = {"cfd::momentum::prepare_x", "cfd::momentum::prepare_y", "cfd::momentum::prepare_z"};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
@@ -69,6 +70,13 @@ void MomentumEquation::prepare(const GasFields& fields) {
               });
     copy_periodic_faces(geometry_.stencil, axis, conductance_[a]);
     copy_periodic_faces(geometry_.stencil, axis, tangential_conductance_[a]);
+  }
+  // Where nothing slips nothing changes along the boundary, and continuity alone gives the normal gradient of eps u.
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    if (piece.kind != PieceKind::no_slip && piece.kind != PieceKind::inlet) continue;
+    const Real growth = (fields.void_fraction(piece.cell) - fields.void_fraction_old(piece.cell)) / dt;
+    wall_stress_[b] = -piece.outward * options_.viscosity * piece.area * growth;
   }
 }
 
@@ -185,6 +193,7 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
       own_(c) += terms.inflow + shear;
       source_(c) += terms.inflow * terms.brought[a] + shear * wall_speed;
     }
+    source_(piece.cell + piece.axis * n) += wall_stress_[b];
     // The mirrored cell, of opposite normal velocity, is a neighbour like any other; it exerts no shear. Beyond a
     // boundary a cell's neighbour is the cell itself.
     const auto beyond = static_cast<std::size_t>(2 * piece.axis + (piece.outward > 0 ? 1 : 0));
@@ -215,6 +224,7 @@ Vec3 MomentumEquation::shear_force(const GasFields& fields, std::size_t b) const
         (a == piece.axis ? 0 : piece.velocity[a]) - fields.velocity(piece.cell + a * fields.cells);
     result[a] = (a == piece.axis ? 2 * terms.mirror : terms.shear) * slip;
   }
+  result[piece.axis] += wall_stress_[b];
   return result;
 }
 

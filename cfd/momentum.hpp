@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "cfd/boundary_pieces.hpp"
 #include "cfd/convection.hpp"
@@ -25,8 +26,8 @@ class MomentumEquation {
  public:
   MomentumEquation(const FlowGeometry& geometry, const Boundaries& boundaries, const GasOptions& options);
 
-  /// Once a step, when the void fraction is known: viscous conductances.
-  void prepare(const GasFields& fields);
+  /// Once a step, when the void fraction is known: viscous conductances, normal stress at walls.
+  void prepare(const GasFields& fields, Real dt);
   /// Coefficients from the mass fluxes and velocities at hand.
   void assemble(const GasFields& fields);
   /// 3 cells: sum of near u_N + source [N], from the velocities at hand.
@@ -54,6 +55,7 @@ class MomentumEquation {
   ConvectionCorrection correction_;
   FaceField conductance_;             ///< mu area / distance [kg/s]; 0 on boundary faces
   FaceField tangential_conductance_;  ///< the same times the face's void fraction
+  std::vector<Real> wall_stress_;     ///< of each boundary piece: normal force on the gas along +axis [N]
   std::array<HostArray<Real>, 6> near_,
       normal_;  ///< x-, x+, y-, y+, z-, z+; for components across, along that axis
   HostArray<Real> own_, source_, inverse_;
