@@ -52,14 +52,17 @@ struct BlockContactKernel {
   Laws laws;
 
   void operator()(const Index block) const {
-    // Force, torque, contacts; the last place takes what belongs to other blocks.
-    alignas(64) Sum sum[contact_block + 1];
+    // Force, torque, contacts: what particles get from pairs in their own rows, and in those of others. The last places take
+    // what belongs to other blocks, several so that one addition need not wait for another.
+    alignas(64) Sum own[contact_block + 1];
+    alignas(64) Sum others[contact_block + 8];
     Window window;
     BlockReport report = start_report(out.report(block));
     const Index begin = block * contact_block;
     const Index end = std::min(begin + contact_block, in.particles.count);
-    for (Index k = 0; k < end - begin; ++k) sum[k] = Sum{};
-    sum[contact_block] = Sum{};
+    for (Index k = 0; k < end - begin; ++k) own[k] = others[k] = Sum{};
+    own[contact_block] = Sum{};
+    for (int k = 0; k < 8; ++k) others[contact_block + k] = Sum{};
     const std::int32_t last = in.list.offset(end);
     Index p = begin;
     for (std::int32_t slot = in.list.offset(begin); slot < last; slot += pair_window) {
@@ -70,16 +73,17 @@ struct BlockContactKernel {
       if (window.count == 0) continue;
       gather_motion(window);
       find_forces(window, report);
-      add_forces(window, sum);
+      add_forces(window, own, others);
       if constexpr (remembers) put_back_springs(slot, stop, window);
     }
     for (Index k = 0; k < end - begin; ++k) {
-      const auto contacts = static_cast<std::int32_t>(sum[k][6]);
-      const Vec3 force{sum[k][0], sum[k][1], sum[k][2]};
+      const Sum sum = own[k] + others[k];
+      const auto contacts = static_cast<std::int32_t>(sum[6]);
+      const Vec3 force{sum[0], sum[1], sum[2]};
       report.touching += contacts;
       if (in.particles.velocity_spin(begin + k).inverse_mass == 0) report.support_impulse += in.kick * force;
       out.force(begin + k) = force;
-      out.torque(begin + k) = {sum[k][3], sum[k][4], sum[k][5]};
+      out.torque(begin + k) = {sum[3], sum[4], sum[5]};
       out.touching_new(begin + k) = contacts;
     }
     out.report(block) = report;
@@ -150,8 +154,6 @@ struct BlockContactKernel {
     using lanes::Real4;
     using lanes::Real8;
     const PositionRadius* const place = in.particles.position_radius.data();
-    // For gather_motion.
-    for (int k = 0; k < 8; ++k) __builtin_prefetch(in.particles.velocity_spin.data() + partner[k]);
     const auto own = [&](int k) { return lanes::load<Real4>(place + begin + owner[k]); };
     const auto other = [&](int k) { return lanes::load<Real4>(place + partner[k]); };
     Real8 a[4];
@@ -175,6 +177,11 @@ struct BlockContactKernel {
     const Real8 reach_squared = reach * reach;
     const auto touches =
         static_cast<lanes::Mask8>(lanes::less(distance_squared, reach_squared) & (0xff >> (8 - valid)));
+    if constexpr (remembers) gather_springs(slot, valid, touches, w, group, n);
+    // In a gas of particles hardly any touch.
+    if (touches == 0) return n;
+    // For gather_motion.
+    for (int k = 0; k < 8; ++k) __builtin_prefetch(in.particles.velocity_spin.data() + partner[k]);
     lanes::pack(touches, dx, w.dx + n);
     lanes::pack(touches, dy, w.dy + n);
     lanes::pack(touches, dz, w.dz + n);
@@ -183,15 +190,16 @@ struct BlockContactKernel {
     lanes::pack(touches, lanes::to_float(b[3]), w.rj + n);
     const lanes::Int8 of_i = __builtin_convertvector(lanes::load<lanes::Short8>(owner), lanes::Int8);
     const auto j = lanes::load<lanes::Int8>(partner);
-    // Outside the block, also below it, the unsigned difference is more than the last place.
+    // Outside the block, also below it, the unsigned difference is more than the last particle's.
     const auto local = reinterpret_cast<lanes::Unsigned8>(j - begin);
-    const lanes::Unsigned8 outside = lanes::Unsigned8{} + static_cast<std::uint32_t>(contact_block);
+    constexpr auto last = static_cast<std::uint32_t>(contact_block);
+    constexpr lanes::Unsigned8 outside{last,     last + 1, last + 2, last + 3,
+                                       last + 4, last + 5, last + 6, last + 7};
     const auto of_j = reinterpret_cast<lanes::Int8>(local < outside ? local : outside);
     lanes::pack(touches, of_i, w.sum_of_i + n);
     lanes::pack(touches, of_i + begin, w.i + n);
     lanes::pack(touches, j, w.j + n);
     lanes::pack(touches, of_j, w.sum_of_j + n);
-    if constexpr (remembers) gather_springs(slot, valid, touches, w, group, n);
     return n + lanes::count(touches);
   }
 
@@ -221,24 +229,31 @@ struct BlockContactKernel {
   void gather_springs(std::int32_t slot, std::int32_t valid, lanes::Mask8 touches, Window& w, int group,
                       int n) const {
     bool* const held = out.springs.held.data() + slot;
-    unsigned goes_on = 0;
-    for (std::int32_t k = 0; k < valid; ++k) {
-      goes_on |= (held[k] ? 1U : 0U) << k;
-      held[k] = ((touches >> k) & 1) != 0;
+    lanes::Mask8 goes_on = 0;
+    if (valid == 8) {
+      goes_on = lanes::load_flags(held);
+      if (goes_on != touches) lanes::store_flags(touches, held);
+    } else {
+      for (std::int32_t k = 0; k < valid; ++k) {
+        goes_on = static_cast<lanes::Mask8>(goes_on | (held[k] ? 1 : 0) << k);
+        held[k] = ((touches >> k) & 1) != 0;
+      }
     }
+    w.touches[group] = touches;
+    if (touches == 0) return;
     for (int e = 0; e < components; ++e) {
       // Of the next window: springs come from far away.
       __builtin_prefetch(out.springs.component(e) + slot + pair_window, 1);
       const auto spring = lanes::load<lanes::Real8>(out.springs.component(e) + slot);
-      lanes::pack(touches, lanes::keep(static_cast<lanes::Mask8>(goes_on), spring), w.spring[e] + n);
+      lanes::pack(touches, lanes::keep(goes_on, spring), w.spring[e] + n);
     }
-    w.touches[group] = touches;
   }
 
   void put_back_springs(std::int32_t slot, std::int32_t stop, const Window& w) const {
     int n = 0;
     for (std::int32_t s = slot; s < stop; s += 8) {
       const lanes::Mask8 touches = w.touches[(s - slot) / 8];
+      if (touches == 0) continue;
       for (int e = 0; e < components; ++e) {
         lanes::unpack(touches, w.spring[e] + n, out.springs.component(e) + s);
       }
@@ -354,9 +369,14 @@ struct BlockContactKernel {
         std::max(report.largest_approach_speed, static_cast<Real>(largest_approach));
   }
 
-  /// Adds forces and torques to both particles of every pair, pairs in list order.
-  void add_forces(const Window& w, Sum* sum) const {
+  /// Adds forces and torques to both particles of every pair, pairs in list order. Pairs of a row come one after the other:
+  /// their sum stays in a register and is written out at each of them, so that none waits for what was written before.
+  void add_forces(const Window& w, Sum* own, Sum* others) const {
+    using lanes::Bits8;
+    using lanes::Int8;
     using lanes::Real8;
+    Int8 before = Int8{} + w.sum_of_i[0];
+    Real8 row = own[w.sum_of_i[0]];
     for (int c = 0; c < w.count; c += 8) {
       const auto real = [&](const float* from) {
         return lanes::to_real(lanes::load<lanes::Float8>(from + c));
@@ -392,9 +412,16 @@ struct BlockContactKernel {
       Real8 j[8] = {-i[0], -i[1], -i[2], half_x - rest_x, half_y - rest_y, half_z - rest_z, one, Real8{}};
       lanes::transpose(i);
       lanes::transpose(j);
+      const auto of_i = lanes::load<Int8>(w.sum_of_i + c);
+      alignas(64) std::int64_t goes_on[8];  // all bits set: the same row as the pair before
+      lanes::store(__builtin_convertvector(
+                       of_i == __builtin_shufflevector(before, of_i, 7, 8, 9, 10, 11, 12, 13, 14), Bits8),
+                   goes_on);
+      before = of_i;
       for (int k = 0; k < 8; ++k) {
-        sum[w.sum_of_i[c + k]] += i[k];
-        sum[w.sum_of_j[c + k]] += j[k];
+        row = reinterpret_cast<Real8>(reinterpret_cast<Bits8>(row) & goes_on[k]) + i[k];
+        own[w.sum_of_i[c + k]] = row;
+        others[w.sum_of_j[c + k]] += j[k];
       }
     }
   }

@@ -106,7 +106,7 @@ class Engine {
       begin_substep(timers);
       {
         const core::Timers::Scope scope(timers, core::Part::motion);
-        move_particles(particles_, result_, list_, setup_.domain, step_, fluid_force, flags_);
+        move_particles(particles_, result_, list_, step_, fluid_force, flags_);
         Kokkos::fence("dem::engine::moved");
       }
       end_substep();

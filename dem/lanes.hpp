@@ -17,7 +17,9 @@ namespace pellicle::dem::lanes {
 
 using Real4 = Real __attribute__((vector_size(32)));
 using Real8 = Real __attribute__((vector_size(64)));
+using Bits4 = std::int64_t __attribute__((vector_size(32)));
 using Bits8 = std::int64_t __attribute__((vector_size(64)));
+using Float4 = float __attribute__((vector_size(16)));
 using Float8 = float __attribute__((vector_size(32)));
 using Float16 = float __attribute__((vector_size(64)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
@@ -129,6 +131,67 @@ inline Real8 keep(Mask8 mask, const Real8& v) {
   for (int k = 0; k < 8; ++k) result[k] = ((mask >> k) & 1) != 0 ? v[k] : 0;
   return result;
 #endif
+}
+
+/// Three numbers from each of two places, side by side, and two zeros.
+inline Real8 load_threes(const Real* first, const Real* second) {
+#ifdef PELLICLE_AVX512
+  const auto low = reinterpret_cast<Real4>(_mm256_maskz_loadu_pd(0x07, first));
+  const auto high = reinterpret_cast<Real4>(_mm256_maskz_loadu_pd(0x07, second));
+  return __builtin_shufflevector(low, high, 0, 1, 2, 4, 5, 6, 3, 7);
+#else
+  return {first[0], first[1], first[2], second[0], second[1], second[2], 0, 0};
+#endif
+}
+inline Float8 load_threes(const float* first, const float* second) {
+#ifdef PELLICLE_AVX512
+  const auto low = reinterpret_cast<Float4>(_mm_maskz_loadu_ps(0x07, first));
+  const auto high = reinterpret_cast<Float4>(_mm_maskz_loadu_ps(0x07, second));
+  return __builtin_shufflevector(low, high, 0, 1, 2, 4, 5, 6, 3, 7);
+#else
+  return {first[0], first[1], first[2], second[0], second[1], second[2], 0, 0};
+#endif
+}
+
+/// The reverse: writes the first six numbers to two places. One by one: a masked store of more than is written holds up
+/// the next load from there.
+inline void store_threes(const Float8& v, float* first, float* second) {
+  for (int k = 0; k < 3; ++k) {
+    first[k] = v[k];
+    second[k] = v[k + 3];
+  }
+}
+
+/// Writes the first six numbers.
+inline void store_six(const Real8& v, Real* to) {
+#ifdef PELLICLE_AVX512
+  _mm512_mask_storeu_pd(to, 0x3f, reinterpret_cast<__m512d>(v));
+#else
+  for (int k = 0; k < 6; ++k) to[k] = v[k];
+#endif
+}
+
+/// Which of eight flags are set.
+inline Mask8 load_flags(const bool* from) {
+#ifdef PELLICLE_AVX512
+  const __m128i flags = _mm_loadu_si64(from);
+  return static_cast<Mask8>(_mm_movemask_epi8(_mm_slli_epi16(flags, 7)));
+#else
+  unsigned mask = 0;
+  for (int k = 0; k < 8; ++k) mask |= (from[k] ? 1U : 0U) << k;
+  return static_cast<Mask8>(mask);
+#endif
+}
+
+/// The reverse: sets or clears eight flags.
+inline void store_flags(Mask8 mask, bool* to) {
+  for (int k = 0; k < 8; ++k) to[k] = ((mask >> k) & 1) != 0;
+}
+
+/// As round_to_single of a number.
+inline Real8 round_to_single(const Real8& v) {
+  constexpr std::int64_t dropped = (std::int64_t{1} << 29) - 1;
+  return reinterpret_cast<Real8>((reinterpret_cast<Bits8>(v) + (dropped + 1) / 2) & ~dropped);
 }
 
 /// Transposes eight rows of eight.

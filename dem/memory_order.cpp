@@ -1,5 +1,7 @@
 #include "dem/memory_order.hpp"
 
+#include <algorithm>
+
 #include "dem/engine_arrays.hpp"
 
 namespace pellicle::dem {
@@ -14,11 +16,13 @@ KOKKOS_INLINE_FUNCTION Index along(int axis, Index number) {
   return (bits & 1) | ((bits >> 2) & 2) | ((bits >> 4) & 4);
 }
 
-/// The cubes of one level, x fastest.
+/// The cubes of one level, numbered along the axis with the fewest first: layers of cubes, of which each needs the one
+/// before, are then as small as can be and stay in the cache.
 struct Cubes {
   CellLevel level;
   Index3 count;
-  Index first;  ///< number of its first cube
+  Index first;   ///< number of its first cube
+  Index3 stride;  ///< between the numbers of neighbours along each axis
 
   Index last() const { return first + count.x * count.y * count.z; }
 
@@ -26,8 +30,8 @@ struct Cubes {
   template <class Visit>
   KOKKOS_INLINE_FUNCTION void visit_cells(Index cube, const Visit& visit) const {
     const Index own = cube - first;
-    const Index3 corner{edge * (own % count.x), edge * (own / count.x % count.y),
-                        edge * (own / (count.x * count.y))};
+    const Index3 corner{edge * (own / stride.x % count.x), edge * (own / stride.y % count.y),
+                        edge * (own / stride.z % count.z)};
     for (Index number = 0; number < edge * edge * edge; ++number) {
       const Index i = corner.x + along(0, number);
       const Index j = corner.y + along(1, number);
@@ -40,7 +44,13 @@ struct Cubes {
 
 Cubes make_cubes(const CellLevel& level, Index first) {
   const auto cubes = [](Index cells) { return (cells + edge - 1) / edge; };
-  return {level, {cubes(level.cells.x), cubes(level.cells.y), cubes(level.cells.z)}, first};
+  const Index3 count{cubes(level.cells.x), cubes(level.cells.y), cubes(level.cells.z)};
+  int axes[3] = {0, 1, 2};
+  std::stable_sort(axes, axes + 3, [&](int a, int b) { return count[a] < count[b]; });
+  Index3 stride{1, 1, 1};
+  stride[axes[1]] = count[axes[0]];
+  stride[axes[2]] = count[axes[0]] * count[axes[1]];
+  return {level, count, first, stride};
 }
 
 void count_particles(const Cubes& cubes, const DeviceArray<std::int32_t>& cell_start,

@@ -5,6 +5,10 @@
 #include "dem/neighbour_list.hpp"
 #include "dem/particles.hpp"
 
+#ifndef KOKKOS_ENABLE_CUDA
+#include "dem/lanes.hpp"
+#endif
+
 namespace pellicle::dem {
 
 /// The fluid force of a case without gas.
@@ -40,7 +44,6 @@ struct MotionKernel {
   Particles particles;
   ContactResult contacts;
   NeighbourList list;
-  Domain domain;
   MotionStep step;
   FluidForce fluid_force;
   MotionFlagsView flags;
@@ -91,13 +94,74 @@ struct MotionKernel {
   }
 };
 
+#ifndef KOKKOS_ENABLE_CUDA
+
+/// The same on a CPU, velocity and spin side by side in a vector.
+template <class FluidForce>
+struct MotionKernelInLanes {
+  Particles particles;
+  ContactResult contacts;
+  NeighbourList list;
+  MotionStep step;
+  FluidForce fluid_force;
+  MotionFlagsView flags;
+
+  void operator()(const Index p) const {
+    using lanes::Float4;
+    using lanes::Real4;
+    using lanes::Real8;
+    VelocitySpin& motion = particles.velocity_spin(p);
+    const Vec3 fluid = fluid_force(p, motion.velocity(), step.kick);
+    const Real m = motion.inverse_mass;
+    if (m == 0) return;
+    PositionRadius& place = particles.position_radius(p);
+    const Real i = 2.5 * m / (place.radius * place.radius);
+    const Real half = 0.5 * step.time_step;
+    const Vec3& g = step.gravity;
+    const Real8 force = lanes::load_threes(&contacts.force(p).x, &contacts.torque(p).x) +
+                        Real8{fluid.x, fluid.y, fluid.z, 0, 0, 0, 0, 0};
+    const Real8 acceleration = Real8{m, m, m, i, i, i, 0, 0} * force + Real8{g.x, g.y, g.z, 0, 0, 0, 0, 0};
+    float* const kept_linear = &particles.acceleration(p).x;
+    float* const kept_angular = &particles.angular_acceleration(p).x;
+    // Not what ends the row: material and id are no numbers.
+    const Real8 velocity = lanes::keep(0x3f, lanes::load<Real8>(&motion)) -
+                           half * lanes::to_real(lanes::load_threes(kept_linear, kept_angular)) +
+                           step.kick * acceleration;
+    const Real8 kept = lanes::round_to_single(acceleration);
+    lanes::store_threes(lanes::to_float(kept), kept_linear, kept_angular);
+    const Real8 present = velocity + half * kept;
+    lanes::store_six(present, &motion.vx);
+    constexpr lanes::Bits4 in_space{-1, -1, -1, 0};
+    const Real8 step_all = step.time_step * velocity;
+    const auto moved = reinterpret_cast<Real4>(
+        reinterpret_cast<lanes::Bits4>(__builtin_shufflevector(step_all, step_all, 0, 1, 2, 3)) & in_space);
+    lanes::store(lanes::load<Real4>(&place) + moved, &place);
+    Displacement since_build;
+    lanes::store(lanes::load<Float4>(&list.displacement(p)) + __builtin_convertvector(moved, Float4),
+                 &since_build);
+    list.displacement(p) = since_build;
+    if (since_build.spent()) {
+      flags().list_outdated = 1;  // every writer writes the same
+      // Negated, so that NaN counts as broken.
+      const Vec3 v{velocity[0], velocity[1], velocity[2]};
+      if (!(norm_squared(v) < broken_speed * broken_speed)) Kokkos::atomic_max(&flags().broken_particle, p);
+    }
+  }
+};
+
+#endif
+
 /// One substep of all particles under contacts, gravity and the fluid force.
 template <class FluidForce>
 void move_particles(const Particles& particles, const ContactResult& contacts, const NeighbourList& list,
-                    const Domain& domain, const MotionStep& step, const FluidForce& fluid_force,
-                    const MotionFlagsView& flags) {
+                    const MotionStep& step, const FluidForce& fluid_force, const MotionFlagsView& flags) {
+#ifndef KOKKOS_ENABLE_CUDA
+  using Kernel = MotionKernelInLanes<FluidForce>;
+#else
+  using Kernel = MotionKernel<FluidForce>;
+#endif
   Kokkos::parallel_for("dem::motion::move_particles", DeviceRange(0, particles.count),
-                       MotionKernel<FluidForce>{particles, contacts, list, domain, step, fluid_force, flags});
+                       Kernel{particles, contacts, list, step, fluid_force, flags});
 }
 
 }  // namespace pellicle::dem

@@ -55,16 +55,14 @@ struct WallContactKernel {
     Vec3 force = out.force(p);
     Vec3 torque = out.torque(p);
     std::conditional_t<(springs > 0), SpringRow, NoSpringRow> row;
-    row.open(*this, k);
+    row.take(*this, k, candidates);
     for (int i = 0; i < candidates.count(); ++i) {
-      ContactSprings spring = row.take(candidates[i]);
       const ContactForce f =
-          contact(candidates[i], self, motion, compliance, spring, report[candidates[i].wall]);
-      row.put(candidates[i], i, spring);
+          contact(candidates[i], self, motion, compliance, row[i], report[candidates[i].wall]);
       force += f.force;
       torque += f.torque + f.rolling_torque;
     }
-    row.close(*this, k, candidates.count());
+    row.put_back(*this, k, candidates);
     out.force(p) = force;
     out.torque(p) = torque;
     out.touching_new(p) += candidates.count();
@@ -93,51 +91,63 @@ struct WallContactKernel {
     return f;
   }
 
-  /// The springs of one particle's contacts: those of the substep before, and the new ones.
-  struct SpringRow {
-    WallMemory before{}, after{};
-    Vec3 old_spring[most_wall_contacts * (springs > 0 ? springs : 1)];
-    Vec3 new_spring[most_wall_contacts * (springs > 0 ? springs : 1)];
-    unsigned taken = 0;
+  /// The springs of one particle's contacts.
+  class SpringRow {
+   public:
+    // The entries are not set, see WallCandidates.
+    KOKKOS_INLINE_FUNCTION SpringRow() {
+    }  // NOLINT(modernize-use-equals-default): a union's would be deleted
 
-    KOKKOS_INLINE_FUNCTION void open(const WallContactKernel& kernel, Index k) {
-      before = kernel.history.memory(k);
+    KOKKOS_INLINE_FUNCTION ContactSprings& operator[](int i) { return spring_[i]; }
+
+    /// Those that the contacts had in the substep before; zero for contacts that have just begun.
+    KOKKOS_INLINE_FUNCTION void take(const WallContactKernel& kernel, Index k,
+                                     const WallCandidates& contacts) {
+      const WallMemory& before = kernel.history.memory(k);
       const Vec3* const stored = kernel.history.spring.data() + k * most_wall_contacts * springs;
-      for (int e = 0; e < before.count * springs; ++e) old_spring[e] = stored[e];
+      unsigned taken = 0;
+      for (int i = 0; i < contacts.count(); ++i) {
+        spring_[i] = ContactSprings{};
+        const int entry = before.find(contacts[i].wall, contacts[i].at.towards, taken);
+        if (entry < 0) continue;
+        taken |= 1U << entry;
+        if constexpr (Laws::tangential_spring >= 0)
+          spring_[i].tangential = stored[entry * springs + Laws::tangential_spring];
+        if constexpr (Laws::rolling_spring >= 0)
+          spring_[i].rolling = stored[entry * springs + Laws::rolling_spring];
+      }
     }
-    KOKKOS_INLINE_FUNCTION ContactSprings take(const WallCandidate& contact) {
-      const int entry = before.find(contact.wall, contact.at.towards, taken);
-      ContactSprings spring;
-      if (entry < 0) return spring;  // a contact that has just begun
-      taken |= 1U << entry;
-      if constexpr (Laws::tangential_spring >= 0)
-        spring.tangential = old_spring[entry * springs + Laws::tangential_spring];
-      if constexpr (Laws::rolling_spring >= 0)
-        spring.rolling = old_spring[entry * springs + Laws::rolling_spring];
-      return spring;
-    }
-    KOKKOS_INLINE_FUNCTION void put(const WallCandidate& contact, int i, const ContactSprings& spring) {
-      after.wall[i] = contact.wall;
-      after.towards[i] = contact.at.towards;
-      if constexpr (Laws::tangential_spring >= 0)
-        new_spring[i * springs + Laws::tangential_spring] = spring.tangential;
-      if constexpr (Laws::rolling_spring >= 0)
-        new_spring[i * springs + Laws::rolling_spring] = spring.rolling;
-    }
-    KOKKOS_INLINE_FUNCTION void close(const WallContactKernel& kernel, Index k, int count) {
-      after.count = count;
-      kernel.history.memory(k) = after;
+
+    KOKKOS_INLINE_FUNCTION void put_back(const WallContactKernel& kernel, Index k,
+                                         const WallCandidates& contacts) const {
+      WallMemory& after = kernel.history.memory(k);
       Vec3* const stored = kernel.history.spring.data() + k * most_wall_contacts * springs;
-      for (int e = 0; e < count * springs; ++e) stored[e] = new_spring[e];
+      after.count = contacts.count();
+      for (int i = 0; i < contacts.count(); ++i) {
+        after.wall[i] = contacts[i].wall;
+        after.towards[i] = contacts[i].at.towards;
+        if constexpr (Laws::tangential_spring >= 0)
+          stored[i * springs + Laws::tangential_spring] = spring_[i].tangential;
+        if constexpr (Laws::rolling_spring >= 0)
+          stored[i * springs + Laws::rolling_spring] = spring_[i].rolling;
+      }
     }
+
+   private:
+    union {
+      ContactSprings spring_[most_wall_contacts];
+    };
   };
 
   /// The same for laws that do not remember.
-  struct NoSpringRow {
-    KOKKOS_INLINE_FUNCTION void open(const WallContactKernel&, Index) const {}
-    KOKKOS_INLINE_FUNCTION ContactSprings take(const WallCandidate&) const { return {}; }
-    KOKKOS_INLINE_FUNCTION void put(const WallCandidate&, int, const ContactSprings&) const {}
-    KOKKOS_INLINE_FUNCTION void close(const WallContactKernel&, Index, int) const {}
+  class NoSpringRow {
+   public:
+    KOKKOS_INLINE_FUNCTION ContactSprings& operator[](int) { return none_; }
+    KOKKOS_INLINE_FUNCTION void take(const WallContactKernel&, Index, const WallCandidates&) const {}
+    KOKKOS_INLINE_FUNCTION void put_back(const WallContactKernel&, Index, const WallCandidates&) const {}
+
+   private:
+    ContactSprings none_;
   };
 };
 

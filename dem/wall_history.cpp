@@ -1,5 +1,6 @@
 #include "dem/wall_history.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -80,16 +81,20 @@ void WallHistory::save(core::CheckpointWriter& file) const {
   file.write("dem/wall_history/row", host_copy(row_, particles_));
   const auto memory = host_copy(packed_.memory, packed_rows_);
   const auto spring = host_copy(packed_.spring, packed_rows_ * most_wall_contacts * springs_);
-  // Springs of contacts that are not there hold what memory held.
-  std::vector<Vec3> meant(spring.data(), spring.data() + spring.size());
+  // Contacts that are not there hold what memory held.
+  std::vector<WallMemory> meant(static_cast<std::size_t>(packed_rows_));
+  std::vector<Vec3> meant_spring(spring.size());
   for (Index r = 0; r < packed_rows_; ++r) {
-    for (Index e = memory(r).count * springs_; e < most_wall_contacts * springs_; ++e) {
-      const Index entry = r * most_wall_contacts * springs_ + e;
-      meant[static_cast<std::size_t>(entry)] = Vec3{};
-    }
+    const WallMemory& from = memory(r);
+    WallMemory& to = meant[static_cast<std::size_t>(r)];
+    to.count = from.count;
+    std::copy_n(from.wall, from.count, to.wall);
+    std::copy_n(from.towards, from.count, to.towards);
+    const Index first = r * most_wall_contacts * springs_;
+    std::copy_n(spring.data() + first, from.count * springs_, meant_spring.data() + first);
   }
-  file.write("dem/wall_history/memory", memory);
-  file.write("dem/wall_history/spring", meant);
+  file.write("dem/wall_history/memory", meant);
+  file.write("dem/wall_history/spring", meant_spring);
 }
 
 void WallHistory::load(const core::CheckpointReader& file) {
