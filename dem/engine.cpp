@@ -13,6 +13,7 @@ namespace pellicle::dem {
 Engine::Engine(const EngineSetup& setup)
     : setup_(setup),
       walls_(setup.walls, setup.domain.box, setup.contacts.springs()),
+      tuner_(setup.skin.smallest_fraction),
       history_(setup.contacts.springs(), setup.contacts.cohesion.has_value()),
       flags_("dem::engine::flags"),
       leaving_("dem::engine::leaving", domain_side_count) {
@@ -43,6 +44,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   allocate(seeds.size());
   walls_.forget();
   search_.clear();
+  tuner_ = SkinTuner(setup_.skin.smallest_fraction);
   started_ = false;
   left_ = 0;
   left_by_side_ = {};
@@ -66,7 +68,15 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
 SkinOptions Engine::skin() const {
   SkinOptions skin = setup_.skin;
   if (setup_.contacts.cohesion) skin.reach = bridge_reach(*setup_.contacts.cohesion, smallest_radius_);
+  if (skin.tuned) skin.smallest_fraction = tuner_.fraction();
   return skin;
+}
+
+void Engine::tune_skin(bool outdated) {
+  if (!setup_.skin.tuned || list_.count == 0) return;
+  if (!tuner_.note_step(neighbours_per_particle(), outdated)) return;
+  search_.front().set_smallest_fraction(tuner_.fraction());
+  list_valid_ = false;
 }
 
 void Engine::advance(int count, core::Timers& timers) { advance(count, NoFluid{}, timers); }
@@ -119,7 +129,9 @@ void Engine::end_substep() {
   if (++steps_since_build_ >= Displacement::most_steps) list_valid_ = false;
   gravity_impulse_ += step_.kick * moving_mass_ * setup_.gravity;
   volume_time_ += step_.kick * moving_volume_;
-  if (flags_().list_outdated != 0) {
+  const bool outdated = flags_().list_outdated != 0;
+  tune_skin(outdated);
+  if (outdated) {
     list_valid_ = false;
     flags_().list_outdated = 0;
     if (flags_().broken_particle >= 0) {
@@ -184,10 +196,7 @@ std::size_t Engine::bytes() const {
 }
 
 Real Engine::neighbours_per_particle() const {
-  if (list_.count == 0) return 0;
-  std::int32_t total = 0;
-  Kokkos::deep_copy(total, Kokkos::subview(list_.offset, list_.count));
-  return static_cast<Real>(total) / list_.count;
+  return list_.count == 0 ? 0 : static_cast<Real>(list_.entries) / list_.count;
 }
 
 }  // namespace pellicle::dem

@@ -16,6 +16,7 @@
 #include "dem/neighbour_list.hpp"
 #include "dem/particles.hpp"
 #include "dem/side_totals.hpp"
+#include "dem/skin_tuner.hpp"
 #include "dem/wall_system.hpp"
 
 namespace pellicle::dem {
@@ -163,6 +164,8 @@ class Engine {
   void end_substep();
   void build_lists();
   SkinOptions skin() const;
+  /// Lets the tuner see the substep that has ended.
+  void tune_skin(bool outdated);
   void sort_memory();
   void reorder(const DeviceArray<std::int32_t>& order, Index count);
   void remove_left();
@@ -177,6 +180,7 @@ class Engine {
   WallSystem walls_;
   DeviceArray<PairParameters> table_;
   std::vector<NeighbourSearch> search_;  // none before there are particles
+  SkinTuner tuner_;
   NeighbourList list_;
   ContactResult result_;
   ContactHistory history_;

@@ -1,5 +1,8 @@
 // What a checkpoint keeps of the engine.
 #include "dem/engine.hpp"
+
+#include <span>
+
 #include "dem/engine_arrays.hpp"
 
 namespace pellicle::dem {
@@ -35,6 +38,7 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/moving_mass", moving_mass_);
   file.write("dem/moving_volume", moving_volume_);
   file.write("dem/one_particle_material", std::int64_t{one_particle_material_ ? 1 : 0});
+  file.write("dem/skin_tuner", std::span(&tuner_.state, 1));
   if (n == 0) return;
   file.write("dem/position_radius", host_copy(particles_.position_radius, n));
   file.write("dem/velocity_spin", host_copy(particles_.velocity_spin, n));
@@ -69,6 +73,7 @@ void Engine::load(core::CheckpointReader& file) {
   moving_mass_ = file.read_double("dem/moving_mass");
   moving_volume_ = file.read_double("dem/moving_volume");
   one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
+  file.read_into("dem/skin_tuner", std::span(&tuner_.state, 1));
   if (largest_radius_ > 0) {
     search_.emplace_back(setup_.domain, skin(), smallest_radius_, largest_radius_);
     walls_.set_allowances(setup_.skin, setup_.time_step, smallest_radius_, largest_radius_);

@@ -13,6 +13,11 @@
 
 #include "core/types.hpp"
 
+#if defined(__GNUC__) && !defined(__clang__)
+// On a processor with shorter vectors gcc tells how it would pass the long ones; all calls are inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
 namespace pellicle::dem::lanes {
 
 using Real4 = Real __attribute__((vector_size(32)));
@@ -140,7 +145,7 @@ inline Real8 load_threes(const Real* first, const Real* second) {
   const auto high = reinterpret_cast<Real4>(_mm256_maskz_loadu_pd(0x07, second));
   return __builtin_shufflevector(low, high, 0, 1, 2, 4, 5, 6, 3, 7);
 #else
-  return {first[0], first[1], first[2], second[0], second[1], second[2], 0, 0};
+  return Real8{first[0], first[1], first[2], second[0], second[1], second[2], 0, 0};
 #endif
 }
 inline Float8 load_threes(const float* first, const float* second) {
@@ -149,7 +154,7 @@ inline Float8 load_threes(const float* first, const float* second) {
   const auto high = reinterpret_cast<Float4>(_mm_maskz_loadu_ps(0x07, second));
   return __builtin_shufflevector(low, high, 0, 1, 2, 4, 5, 6, 3, 7);
 #else
-  return {first[0], first[1], first[2], second[0], second[1], second[2], 0, 0};
+  return Float8{first[0], first[1], first[2], second[0], second[1], second[2], 0, 0};
 #endif
 }
 

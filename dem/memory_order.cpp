@@ -21,7 +21,7 @@ KOKKOS_INLINE_FUNCTION Index along(int axis, Index number) {
 struct Cubes {
   CellLevel level;
   Index3 count;
-  Index first;   ///< number of its first cube
+  Index first;    ///< number of its first cube
   Index3 stride;  ///< between the numbers of neighbours along each axis
 
   Index last() const { return first + count.x * count.y * count.z; }

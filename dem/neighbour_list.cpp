@@ -201,6 +201,7 @@ void NeighbourSearch::find_rows(const Particles& particles, NeighbourList& list,
     place_rows(list, first, present, static_cast<std::int32_t>(before), staging_, block_start_,
                block_capacity_);
   }
+  list.entries = total;
 }
 
 std::size_t NeighbourSearch::bytes() const {

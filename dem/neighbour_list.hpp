@@ -14,9 +14,10 @@ namespace pellicle::dem {
 /// the annulus gets little, a fast one in the spout more, so that one fast particle does not fatten every list.
 struct SkinOptions {
   Real steps = 26;                ///< steps that a particle's own speed should last
-  Real smallest_fraction = 0.10;  ///< of the smallest radius
+  Real smallest_fraction = 0.07;  ///< of the smallest radius, at the start if it is tuned
   Real largest_fraction = 0.40;   ///< of the largest radius
   Real reach = 0;                 ///< share of a particle in the gap at which two still feel each other [m]
+  bool tuned = true;              ///< whether the engine looks for a better smallest fraction, see SkinTuner
 };
 
 /// Whether lists have pairs once where they can: on a CPU that halves the work; a GPU would need atomics.
@@ -32,6 +33,7 @@ inline constexpr Index list_block = 1024;
 /// A slot keeps its meaning until the next build, so laws with history can keep an array per slot.
 struct NeighbourList {
   Index count = 0;                         ///< particles
+  std::int64_t entries = 0;                ///< of all rows
   bool half = half_lists;                  ///< to be set before a build
   DeviceArray<std::int32_t> offset;        ///< count + 1
   DeviceArray<std::int32_t> partner;       ///< particle index, row by row, ordered by cell, then by id
@@ -55,6 +57,9 @@ class NeighbourSearch {
 
   /// Brings particles back into the domain and finds their canonical order, by cell, then by id; spoils the list.
   void find_order(const Particles& particles, Real time_step, NeighbourList& list);
+  /// From the next build on.
+  void set_smallest_fraction(Real fraction) { skin_.smallest_fraction = fraction; }
+
   /// Particle indices in canonical order, as of the last build or search for it: the order to sort memory by.
   const DeviceArray<std::int32_t>& order() const { return order_; }
 

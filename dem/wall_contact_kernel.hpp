@@ -95,8 +95,7 @@ struct WallContactKernel {
   class SpringRow {
    public:
     // The entries are not set, see WallCandidates.
-    KOKKOS_INLINE_FUNCTION SpringRow() {
-    }  // NOLINT(modernize-use-equals-default): a union's would be deleted
+    KOKKOS_INLINE_FUNCTION SpringRow() {}  // NOLINT(modernize-use-equals-default): a union's would be deleted
 
     KOKKOS_INLINE_FUNCTION ContactSprings& operator[](int i) { return spring_[i]; }
 
