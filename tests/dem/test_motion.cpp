@@ -43,7 +43,7 @@ Scene make_scene(Index count) {
     s.particles.angular_acceleration(p) = convert<float>(1e3 * random_vector(5, p));
     s.contacts.force(p) = 1e-3 * random_vector(6, p);
     s.contacts.torque(p) = 1e-6 * random_vector(7, p);
-    s.list.displacement(p) = {1e-4F * static_cast<float>(w.x), 0, 0, 1e-2F};
+    s.list.displacement(p) = {1e-4F * static_cast<float>(w.x), 0, 0, 5e-3F};
   }
   return s;
 }
