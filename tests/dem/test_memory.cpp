@@ -12,6 +12,8 @@ Real bytes_per_particle(Real spread, bool remembers) {
   const std::size_t count = 30'000;
   auto setup = tests::glass_setup({0.06, 0.06, 0.10}, 1e-5);
   setup.gravity = {0, 0, -9.81};
+  setup.skin.smallest_fraction = 0.1;  // so that the length of the lists is given
+  setup.skin.tuned = false;
   if (remembers) tests::let_contacts_remember(setup);
   tests::add_box_walls(setup);
   std::vector<Real> radii;
