@@ -37,7 +37,8 @@ output:
   lines:
     - {name: vz, from: [0, "10 mm", "20 mm"], to: ["20 mm", "10 mm", "20 mm"], points: 4, depth_average: y,
        thickness: "5 mm", quantity: particle_velocity_z}
-  probes: [{name: bed, bed: {}, every: "1 ms"}, {name: third, particle: 3, every: "1 ms"}]
+  probes: [{name: bed, bed: {}, every: "1 ms"}, {name: third, particle: 3, every: "1 ms"},
+           {name: out, side: bottom, every: "1 ms"}]
   histograms: [{name: sizes, quantity: particle_diameter, every: "20 ms"}]
 """
 BED = HEAD + """
@@ -83,10 +84,24 @@ class Feed(unittest.TestCase):
         self.assertEqual(summary["particles_fed"], summary["particles"] + summary["particles_left_through_open_sides"])
         self.assertGreater(summary["particles"], 50)
         self.assertGreater(summary["mass_left"], 0)
+        # All leave through the floor; the probe's rates add up to what left.
+        left = summary["left_by_side"]
+        self.assertEqual(list(left), ["bottom"])
+        self.assertEqual(left["bottom"]["particles"], summary["particles_left_through_open_sides"])
+        self.assertAlmostEqual(left["bottom"]["mass"], summary["mass_left"], delta=1e-12)
+        report = subprocess.run([PROGRAM, "report", str(self.folder / "whole")], capture_output=True, text=True, check=True)
+        self.assertRegex(report.stdout, rf"(?m)^  bottom +{left['bottom']['particles']}, ")
+        with open(self.folder / "whole" / "probes" / "out.csv", encoding="utf-8") as file:
+            rows = [[float(value) for value in row] for row in list(csv.reader(file))[1:]]
+        self.assertEqual(rows[-1][4], left["bottom"]["particles"])
+        self.assertAlmostEqual(rows[-1][3], left["bottom"]["mass"], delta=1e-12)
+        steps = [now[0] - before[0] for before, now in zip(rows, rows[1:])]
+        self.assertAlmostEqual(sum(row[1] * step for row, step in zip(rows[1:], steps)), rows[-1][3], delta=1e-9)
+        self.assertAlmostEqual(sum(row[2] * step for row, step in zip(rows[1:], steps)), rows[-1][4], delta=1e-3)
         # A hundred particles come and go: their masses and impulses add up to round-off.
         self.assertLess(summary["defects"]["particle_mass"], 1e-13)
         self.assertLess(summary["defects"]["momentum"], 1e-11)
-        for file in ("lines/vz.csv", "probes/bed.csv", "probes/third.csv", "histograms/sizes.csv", "particles.h5"):
+        for file in ("lines/vz.csv", "probes/bed.csv", "probes/third.csv", "probes/out.csv", "histograms/sizes.csv", "particles.h5"):
             self.assertTrue((self.folder / "whole" / file).exists(), file)
 
         stopped = run(self.case, self.folder / "stopped", "--until", "40 ms")
@@ -95,6 +110,8 @@ class Feed(unittest.TestCase):
         self.assertEqual(resumed.returncode, 0, resumed.stdout + resumed.stderr)
         one, other = arrays(self.folder / "whole" / "checkpoint.h5"), arrays(self.folder / "stopped" / "checkpoint.h5")
         self.assertEqual(one.keys(), other.keys())
+        self.assertEqual((self.folder / "whole" / "probes" / "out.csv").read_bytes(),
+                         (self.folder / "stopped" / "probes" / "out.csv").read_bytes())
         for name, value in one.items():
             self.assertTrue(np.array_equal(value, other[name]), name)
 
