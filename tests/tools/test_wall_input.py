@@ -126,6 +126,22 @@ class WallInput(unittest.TestCase):
             self.assertIn("wall insert: 12 triangles, 8 corners, 0.01 x 0.01 x 0.02 m, watertight", self.run_well(mesh=mesh))
         self.run_well(CASE.replace("unit: mm, ", ""), binary(METRES))
 
+    def test_results_can_be_moved_with_the_case(self):
+        """The resolved case finds the mesh from the results folder; a run goes on in another place."""
+        self.run_well()
+        resolved = (self.results / "case.yaml").read_text(encoding="utf-8")
+        self.assertIn('stl: "../insert.stl"', resolved)
+        self.assertNotIn(str(self.folder), resolved)
+        moved = self.folder / "moved" / "deep"
+        moved.mkdir(parents=True)
+        for name in ("case.yaml", "insert.stl", "out"):
+            (self.folder / name).rename(moved / name)
+        self.run_program("check", moved / "out" / "case.yaml")
+        resumed = self.run_program("run", moved / "case.yaml", "--output", moved / "out", "--resume", "--set", "time.end=2 ms")
+        self.assertEqual(resumed.returncode, 0, resumed.stdout + resumed.stderr)
+        again = self.run_program("run", moved / "out" / "case.yaml", "--output", moved / "again")
+        self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
+
     def test_what_is_doubtful_is_said(self):
         log = self.run_well(mesh=binary(INSERT[:-1] + [((15, 15, 10), (20, 20, 20), (25, 25, 30))]))
         self.assertIn("not watertight (3 open edges)", log)

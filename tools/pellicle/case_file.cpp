@@ -39,8 +39,12 @@ CaseSpec parse_case(const std::string& text, const std::string& name,
   return read_case(core::parse_yaml(text, name), name, overrides);
 }
 
-std::string resolved_yaml(const CaseSpec& spec) {
+std::string resolved_yaml(const CaseSpec& spec, const std::optional<std::string>& folder) {
   CaseSpec copy = spec;
+  for (WallSpec& wall : copy.walls) {
+    // The way through the folders as they are, whatever links lead there.
+    if (wall.stl && folder) wall.stl = std::filesystem::relative(*wall.stl, *folder).generic_string();
+  }
   return "# The case as run: every default filled in, numbers in SI units.\n" +
          core::write_keys([&](core::Keys& keys) { describe_case(keys, copy); });
 }

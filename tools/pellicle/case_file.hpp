@@ -1,6 +1,7 @@
 // From a case file to a CaseSpec, and back.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ CaseSpec load_case(const std::string& path, const std::vector<std::string>& over
 CaseSpec parse_case(const std::string& text, const std::string& name,
                     const std::vector<std::string>& overrides = {});
 
-/// The case as a case file with all defaults filled in, in SI. Reading it gives the same case.
-std::string resolved_yaml(const CaseSpec& spec);
+/// The case as a case file with all defaults filled in, in SI. Reading it gives the same case. With the folder that it is
+/// meant for, paths of meshes lead from there, so that both can be moved together; without, they are absolute.
+std::string resolved_yaml(const CaseSpec& spec, const std::optional<std::string>& folder = std::nullopt);
 
 /// Name of a case: of its folder if the file is called case.yaml, else of the file without its ending.
 std::string case_name(const std::string& path);

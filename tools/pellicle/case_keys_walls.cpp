@@ -94,7 +94,7 @@ void describe_shape(Keys& keys, WallSpec& wall, const std::string& case_file) {
   if (wall.stl && !wall.unit) wall.unit = 0;
   if (!wall.stl && wall.unit)
     keys.problem("unit", "there is no file that it says something of; only with stl");
-  // The resolved file, which is written elsewhere, must find the mesh too.
+  // The resolved file, which is written elsewhere, must find the mesh too (resolved_yaml).
   if (wall.stl && std::filesystem::path(*wall.stl).is_relative()) {
     wall.stl = std::filesystem::absolute(std::filesystem::path(case_file).parent_path() / *wall.stl)
                    .lexically_normal()

@@ -67,7 +67,7 @@ int run_command(const RunArguments& arguments) {
   options.until = read_until(arguments);
   options.resume = arguments.resume;
   options.overwrite = arguments.overwrite;
-  options.case_yaml_text = resolved_yaml(spec);
+  options.case_yaml_text = resolved_yaml(spec, options.output_folder);
 
   Kokkos::InitializationSettings settings;
   if (arguments.threads > 0) settings.set_num_threads(arguments.threads);
