@@ -51,8 +51,9 @@ class Obstacles {
     bool closed;
     Side room;
   };
-  bool encloses(const MeshGrid& grid, const Vec3& point_in_wall) const;
-  std::optional<ClosestPoint> closest_on(const Mesh& mesh, const Vec3& point_in_wall, Real reach) const;
+  // These two take points of the frame of the wall.
+  bool encloses(const MeshGrid& grid, const Vec3& point) const;
+  std::optional<ClosestPoint> closest_on(const Mesh& mesh, const Vec3& c, Real reach) const;
 
   BasicWallGeometry<Host> geometry_;
   std::vector<Mesh> meshes_;

@@ -329,8 +329,8 @@ void expect_to_continue_bit_for_bit(bool remembers) {
   setup.domain.open_max = {0, 0, 1};
   setup.gravity = {0, 5, -200};  // settles within the test
   tests::add_box_walls(setup);
-  setup.walls.push_back(PlaneWall{"partition", {0.02, 0, 0}, {-1, 0, 0}, {}, 1});
-  setup.walls.push_back(PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1});
+  setup.walls.emplace_back(PlaneWall{"partition", {0.02, 0, 0}, {-1, 0, 0}, {}, 1});
+  setup.walls.emplace_back(PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 1});
   if (remembers) {
     tests::let_contacts_remember(setup);
     setup.contacts.cohesion = Willett{1e-11, 0.072, 0.3};

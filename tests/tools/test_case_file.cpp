@@ -523,9 +523,10 @@ TEST(CaseParticles, PopulationsOfOneRegionMix) {
   const CaseSpec spec = parse_case(powders_case, "c.yaml", {"particles=[" + half + ", " + half + "]"});
   const auto particles = make_particles(spec, {});
   ASSERT_EQ(particles.size(), 2u * static_cast<std::size_t>(spec.particles[0].filled));
+  const std::size_t half_count = particles.size() / 2;
   Real heights[2] = {0, 0};
   for (std::size_t a = 0; a < particles.size(); ++a) {
-    heights[a / (particles.size() / 2)] += particles[a].position.z / static_cast<Real>(particles.size() / 2);
+    heights[a / half_count] += particles[a].position.z / static_cast<Real>(half_count);
     for (std::size_t b = 0; b < a; ++b) {
       ASSERT_GE(norm(particles[a].position - particles[b].position), 0.002 * (1 - 1e-9));
     }
