@@ -22,9 +22,6 @@ void compute(const char* label, int axis, const FlowGeometry& geometry, const Bo
   const Stencil& s = geometry.stencil;
   const auto ua = static_cast<std::size_t>(axis);
   const AxisMetrics& metrics = geometry.axis[ua];
-  const bool periodic = s.periodic[ua];
-  const Index n = s.n[axis];
-  const Index stride = s.stride(axis);
   const Index faces = s.faces(axis);
   const Index cells = fields.cells;
   const Real* u = fields.velocity.data();
@@ -34,43 +31,26 @@ void compute(const char* label, int axis, const FlowGeometry& geometry, const Bo
   Real* normal_value = result.normal_value[ua].data();
   for_faces(label, s, axis, [&](Index f, Index minus, Index plus, Index position, Index place) {
     const bool forward = flux[f] >= 0;
-    const Index central = forward ? minus : plus;
-    const Index downstream = forward ? plus : minus;
     if constexpr (scheme == Convection::upwind) {
+      const Index central = forward ? minus : plus;
       normal_value[f] = eps[central] * u[central + axis * cells];
       return;
     }
-    const auto at = static_cast<std::size_t>(position);
-    const Real linear_central = forward ? metrics.linear_minus[at] : 1 - metrics.linear_minus[at];
-    const auto& quick = forward ? metrics.quick_forward[at] : metrics.quick_backward[at];
-    Index upstream_position = forward ? position - 2 : position + 1;
-    const bool inside = upstream_position >= 0 && upstream_position < n;
-    if (periodic) upstream_position = (upstream_position + 2 * n) % n;
-    const Index upstream = plus + (upstream_position - position) * stride;
+    const FaceNeighbours near = find_neighbours(s, metrics, axis, forward, minus, plus, position);
     const BoundaryValue* boundary = nullptr;
-    if (!inside && !periodic) {
+    if (near.beyond)
       boundary = &boundaries.values[2 * ua + (forward ? 0 : 1)][static_cast<std::size_t>(place)];
-    }
     for (int a = 0; a < 3; ++a) {
       const Index shift = a * cells;
       const bool normal = a == axis;
       const auto value = [&](Index c) { return normal ? eps[c] * u[c + shift] : u[c + shift]; };
-      const Real phi_c = value(central);
-      const Real phi_d = value(downstream);
-      Real face = linear_central * phi_c + (1 - linear_central) * phi_d;
-      if constexpr (scheme != Convection::central) {
-        Real phi_u = 0;
-        if (boundary) {
-          // The upstream cell would lie beyond the boundary: linear, limited with the value mirrored there.
-          phi_u = 2 * (boundary->fixed[a] + boundary->free[a] * phi_c) - phi_c;
-        } else {
-          phi_u = value(upstream);
-          face = quick[0] * phi_u + quick[1] * phi_c + quick[2] * phi_d;
-        }
-        if constexpr (scheme == Convection::ultimate_quickest)
-          face = ultimate_limit(face, phi_u, phi_c, phi_d);
-      }
-      correction[f + a * faces] = flux[f] * (face - phi_c);
+      const Real central = value(near.central);
+      const Real face =
+          face_value<scheme>(central, value(near.downstream), near.linear_central, *near.quick, [&] {
+            return boundary ? Upstream{2 * (boundary->fixed[a] + boundary->free[a] * central) - central, true}
+                            : Upstream{value(near.upstream), false};
+          });
+      correction[f + a * faces] = flux[f] * (face - central);
       if (normal) normal_value[f] = face;
     }
   });

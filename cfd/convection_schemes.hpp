@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "cfd/flow_geometry.hpp"
+#include "cfd/gas_options.hpp"
 #include "core/types.hpp"
 
 namespace pellicle::cfd {
@@ -22,6 +25,56 @@ inline Real ultimate_limit(Real face, Real upstream, Real central, Real downstre
   const Real step = ahead > 0 ? face - central : central - face;
   const Real bounded = std::clamp(step, Real{0}, limit);
   return ahead > 0 ? central + bounded : central - bounded;
+}
+
+/// Where the value upstream of a face comes from.
+struct Upstream {
+  Real value =
+      0;  ///< of the upstream cell; where that would lie beyond a boundary, the boundary value mirrored there
+  bool beyond = false;  ///< it would lie there: linear in place of quadratic interpolation
+};
+
+/// Value at a face. `linear_central`: weight of the central cell in linear interpolation; `quick`: weights of the
+/// upstream, central and downstream cell; upstream(): only called where the scheme needs it.
+template <Convection scheme, class GetUpstream>
+inline Real face_value(Real central, Real downstream, Real linear_central, const std::array<Real, 3>& quick,
+                       GetUpstream&& upstream) {
+  if constexpr (scheme == Convection::upwind) return central;
+  Real face = linear_central * central + (1 - linear_central) * downstream;
+  if constexpr (scheme != Convection::central) {
+    const Upstream up = upstream();
+    if (!up.beyond) face = quick[0] * up.value + quick[1] * central + quick[2] * downstream;
+    if constexpr (scheme == Convection::ultimate_quickest)
+      face = ultimate_limit(face, up.value, central, downstream);
+  }
+  return face;
+}
+
+/// The cells on both sides of a face as the flow sees them.
+struct FaceNeighbours {
+  Index central, downstream;
+  Index upstream;  ///< of no meaning if beyond
+  bool beyond;     ///< the upstream cell would lie beyond a boundary
+  Real linear_central;
+  const std::array<Real, 3>* quick;
+};
+
+/// For a face between cells minus and plus, at a position along the axis, with the flow along +axis or against it.
+inline FaceNeighbours find_neighbours(const Stencil& s, const AxisMetrics& metrics, int axis, bool forward,
+                                      Index minus, Index plus, Index position) {
+  const auto at = static_cast<std::size_t>(position);
+  const Index n = s.n[axis];
+  FaceNeighbours result{};
+  result.central = forward ? minus : plus;
+  result.downstream = forward ? plus : minus;
+  result.linear_central = forward ? metrics.linear_minus[at] : 1 - metrics.linear_minus[at];
+  result.quick = forward ? &metrics.quick_forward[at] : &metrics.quick_backward[at];
+  Index upstream_position = forward ? position - 2 : position + 1;
+  const bool periodic = s.periodic[static_cast<std::size_t>(axis)];
+  result.beyond = !periodic && (upstream_position < 0 || upstream_position >= n);
+  if (periodic) upstream_position = (upstream_position + 2 * n) % n;
+  result.upstream = plus + (upstream_position - position) * s.stride(axis);
+  return result;
 }
 
 }  // namespace pellicle::cfd

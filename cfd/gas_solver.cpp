@@ -238,7 +238,7 @@ void GasSolver::Impl::solve_momentum(Real dt, bool tightly, StepReport& report) 
       cell_force(e) += mass * fields.velocity_old(e) + relaxation(e) * fields.velocity(e);
     }
   });
-  const MomentumReport linear =
+  const TransportReport linear =
       momentum.solve(fields, inertia, cell_force, options.solver.momentum_tolerance * (tightly ? 1 : 100));
   report.momentum_iterations += linear.iterations;
   report.momentum_residual = linear.residual;

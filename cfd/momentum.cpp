@@ -37,7 +37,8 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
       options_(options),
       correction_(geometry),
       conductance_(make_face_field(geometry.stencil, "cfd::momentum::conductance")),
-      tangential_conductance_(make_face_field(geometry.stencil, "cfd::momentum::tangential_conductance")) {
+      tangential_conductance_(make_face_field(geometry.stencil, "cfd::momentum::tangential_conductance")),
+      linear_solver_(3 * geometry.stencil.cells()) {
   wall_stress_.assign(boundaries.pieces.size(), 0);
   const Index n = geometry.stencil.cells();
   for (std::size_t d = 0; d < 6; ++d) {
@@ -47,12 +48,6 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
   own_ = make_array("cfd::momentum::own", 3 * n);
   source_ = make_array("cfd::momentum::source", 3 * n);
   inverse_ = make_array("cfd::momentum::inverse", 3 * n);
-  r_ = make_array("cfd::momentum::r", 3 * n);
-  r0_ = make_array("cfd::momentum::r0", 3 * n);
-  p_ = make_array("cfd::momentum::p", 3 * n);
-  v_ = make_array("cfd::momentum::v", 3 * n);
-  s_ = make_array("cfd::momentum::s", 3 * n);
-  t_ = make_array("cfd::momentum::t", 3 * n);
 }
 
 void MomentumEquation::prepare(const GasFields& fields, Real dt) {
@@ -259,64 +254,28 @@ void MomentumEquation::compute_influx(const GasFields& fields, const HostArray<R
         [&](Index e, Real near) { h[e] = near + source[e]; });
 }
 
-// BiCGStab (van der Vorst 1992) on the system divided by its diagonal, the three components together.
-MomentumReport MomentumEquation::solve(const GasFields& fields, const HostArray<Real>& inertia,
-                                       const HostArray<Real>& force, Real tolerance) {
+TransportReport MomentumEquation::solve(const GasFields& fields, const HostArray<Real>& inertia,
+                                        const HostArray<Real>& force, Real tolerance) {
   const Index n = geometry_.stencil.cells();
   const Index size = 3 * n;
-  Real* u = fields.velocity.data();
-  Real *r = r_.data(), *r0 = r0_.data(), *p = p_.data(), *v = v_.data(), *s = s_.data(), *t = t_.data();
   Real* inverse = inverse_.data();
+  Real* right_side = linear_solver_.right_side().data();
   const Real* own = own_.data();
   const Real* source = source_.data();
   const Real* given = force.data();
   const Real* mass = inertia.data();
-  for_entries("cfd::momentum::invert", n, [&](Index c) {
-    for (Index e = c; e < size; e += n) inverse[e] = 1 / (own[e] + mass[e]);
-  });
-  apply("cfd::momentum::start", u, [&](Index e, Real near) {
-    t[e] = (source[e] + given[e]) * inverse[e];
-    r[e] = t[e] + near * inverse[e] - u[e];
-    r0[e] = r[e];
-    p[e] = r[e];
-  });
-  const auto norm_of = [&](const char* label, const Real* x) {
-    return std::sqrt(sum_(label, size, [x](Index e) { return x[e] * x[e]; }));
-  };
-  const Real scale = std::max(norm_of("cfd::momentum::norm_b", t), norm_of("cfd::momentum::norm_u", u));
-  MomentumReport report;
-  Real residual = norm_of("cfd::momentum::norm_r", r);
-  const Real target = tolerance * scale;
-  Real rho = residual * residual;
-  while (residual > target && report.iterations < options_.solver.max_linear_iterations) {
-    apply("cfd::momentum::image_p", p, [&](Index e, Real near) { v[e] = p[e] - near * inverse[e]; });
-    const Real alpha = rho / sum_("cfd::momentum::dot_r0v", size, [&](Index e) { return r0[e] * v[e]; });
-    for_entries("cfd::momentum::half_step", size, [&](Index e) { s[e] = r[e] - alpha * v[e]; });
-    apply("cfd::momentum::image_s", s, [&](Index e, Real near) { t[e] = s[e] - near * inverse[e]; });
-    const Real tt = sum_("cfd::momentum::dot_tt", size, [&](Index e) { return t[e] * t[e]; });
-    const Real ts = sum_("cfd::momentum::dot_ts", size, [&](Index e) { return t[e] * s[e]; });
-    const Real omega = tt > 0 ? ts / tt : 0;
-    for_entries("cfd::momentum::step", size, [&](Index e) {
-      u[e] += alpha * p[e] + omega * s[e];
-      r[e] = s[e] - omega * t[e];
-    });
-    ++report.iterations;
-    residual = norm_of("cfd::momentum::norm_again", r);
-    if (residual <= target || !std::isfinite(residual)) break;
-    const Real rho_new = sum_("cfd::momentum::dot_r0r", size, [&](Index e) { return r0[e] * r[e]; });
-    if (std::abs(rho_new) < 1e-30 * residual * residual || omega == 0) {
-      // Breakdown: begin anew from here.
-      for_entries("cfd::momentum::restart", size, [&](Index e) { r0[e] = p[e] = r[e]; });
-      rho = residual * residual;
-      continue;
+  for_entries("cfd::momentum::divide", n, [&](Index c) {
+    for (Index e = c; e < size; e += n) {
+      inverse[e] = 1 / (own[e] + mass[e]);
+      right_side[e] = (source[e] + given[e]) * inverse[e];
     }
-    const Real beta = (rho_new / rho) * (alpha / omega);
-    rho = rho_new;
-    for_entries("cfd::momentum::turn", size, [&](Index e) { p[e] = r[e] + beta * (p[e] - omega * v[e]); });
-  }
-  report.residual = scale > 0 ? residual / scale : 0;
-  report.converged = residual <= target;
-  return report;
+  });
+  return linear_solver_.solve(
+      fields.velocity.data(),
+      [&](const Real* u, auto&& take) {
+        apply("cfd::momentum::near", u, [&](Index e, Real near) { take(e, near * inverse[e]); });
+      },
+      tolerance, options_.solver.max_linear_iterations);
 }
 
 }  // namespace pellicle::cfd

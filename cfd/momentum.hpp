@@ -4,20 +4,14 @@
 #include <array>
 #include <vector>
 
+#include "cfd/bicgstab.hpp"
 #include "cfd/boundary_pieces.hpp"
 #include "cfd/convection.hpp"
-#include "cfd/fixed_sum.hpp"
 #include "cfd/flow_geometry.hpp"
 #include "cfd/gas_fields.hpp"
 #include "cfd/gas_options.hpp"
 
 namespace pellicle::cfd {
-
-struct MomentumReport {
-  int iterations = 0;
-  Real residual = 0;  ///< relative
-  bool converged = true;
-};
 
 /// Per cell and component: (own + inertia) u = sum of near u_N + source + forces, where own and near hold convection
 /// (upwind; the rest of the scheme is in source) and viscous stress. The equation is the momentum balance less
@@ -34,8 +28,8 @@ class MomentumEquation {
   void compute_influx(const GasFields& fields, const HostArray<Real>& influx) const;
   /// Solves for the velocity in `fields`. `inertia` [kg/s], 3 cells, is added to the diagonal, `force` [N], 3 cells,
   /// to the right-hand side.
-  MomentumReport solve(const GasFields& fields, const HostArray<Real>& inertia, const HostArray<Real>& force,
-                       Real tolerance);
+  TransportReport solve(const GasFields& fields, const HostArray<Real>& inertia, const HostArray<Real>& force,
+                        Real tolerance);
 
   /// Coefficients of u itself, 3 cells [kg/s].
   const HostArray<Real>& own() const { return own_; }
@@ -59,8 +53,7 @@ class MomentumEquation {
   std::array<HostArray<Real>, 6> near_,
       normal_;  ///< x-, x+, y-, y+, z-, z+; for components across, along that axis
   HostArray<Real> own_, source_, inverse_;
-  HostArray<Real> r_, r0_, p_, v_, s_, t_;
-  FixedSum sum_;
+  BiCGStab linear_solver_;
 };
 
 }  // namespace pellicle::cfd

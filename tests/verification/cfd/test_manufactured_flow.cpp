@@ -5,46 +5,19 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/cfd/gas_for_tests.hpp"
-#include "tests/verification/cfd/manufactured.hpp"
+#include "tests/verification/cfd/manufactured_flow.hpp"
 
 namespace pellicle::cfd {
 namespace {
 
 constexpr Real density = 1.3;
 constexpr Real viscosity = 0.05;
-
-// Superficial velocity U = rot(stream) + s' grad(swell), void fraction eps = mean + shape - s lap(swell): continuity
-// d eps/dt + div U = 0 holds whatever the functions are. s(t) = sin(pulse t).
-struct Flow {
-  Product stream, swell, shape, pressure;
-  Real through = 0;  ///< uniform superficial velocity along the second axis [m/s]
-  Real mean_void_fraction = 0.6;
-  Real pulse = 2;
-  Real growth = 0.3;  ///< of the stream function per second, relative
-
-  struct Point {
-    Jet eps, a, b;  ///< void fraction, superficial velocity
-  };
-  Real s(Real t) const { return std::sin(pulse * t); }
-  Real s_rate(Real t) const { return pulse * std::cos(pulse * t); }
-  Point at(Real a, Real b, Real t, Real rate) const {
-    const Jet eps =
-        Jet{mean_void_fraction} + shape.jet(a, b) - s(t) * (swell.jet(a, b, 2, 0) + swell.jet(a, b, 0, 2));
-    const Real strength = 1 + growth * t;
-    return {eps, strength * stream.jet(a, b, 0, 1) + rate * swell.jet(a, b, 1, 0),
-            Jet{through} - strength * stream.jet(a, b, 1, 0) + rate * swell.jet(a, b, 0, 1)};
-  }
-  // Of a cell: a closed domain keeps its gas to round-off only if cells hold exact means.
-  Real mean_void_fraction_of(const std::array<Real, 2>& from, const std::array<Real, 2>& to, Real t) const {
-    return mean_void_fraction + shape.mean(from, to) -
-           s(t) * (swell.mean(from, to, 2, 0) + swell.mean(from, to, 0, 2));
-  }
-};
 
 Real exchange_coefficient(const Jet& eps) { return 4 * (1 - eps.v); }
 
@@ -60,15 +33,6 @@ std::array<Real, 2> steady_force(const Flow::Point& q, const Jet& p) {
   return {convection(ua) + q.eps.v * p.a - viscosity * (q.a.aa + across_b(ua)) + beta * ua.v,
           convection(ub) + q.eps.v * p.b - viscosity * (q.b.bb + across_a(ub)) + beta * ub.v};
 }
-
-struct Setting {
-  std::string name;
-  Flow flow;
-  std::array<int, 2> plane{0, 2};  ///< axes of the flow; along the third one the domain is one cell deep
-  bool periodic = false;
-  std::vector<BoundaryPatch> patches;
-  Real dt = 0.02;  ///< [s]
-};
 
 struct March {
   Convection scheme = Convection::central;
@@ -211,64 +175,17 @@ class Marcher {
   Real rate_ = 0;  ///< s' that belongs to the present state
 };
 
-// sin^2(pi x): it and its slope vanish on walls at 0 and 1.
-const Wave bump{{{0.5, 0, 0}, {-0.5, 2, 0}}};
-// sin^2(pi x) (1 + 1/5 sin 2 pi x).
-const Wave lopsided{{{0.5, 0, 0}, {-0.5, 2, 0}, {0.1, 2, -M_PI / 2}, {-0.05, 4, -M_PI / 2}}};
+struct Kind {
+  const char* name;
+  Setting (*make)();
+};
+void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 
-Wave scaled(Wave wave, Real factor) {
-  for (auto& term : wave.terms) term.amplitude *= factor;
-  return wave;
-}
-
-Side low(int axis) { return static_cast<Side>(2 * axis); }
-Side high(int axis) { return static_cast<Side>(2 * axis + 1); }
-
-Setting make_periodic() {
-  Flow f;
-  f.stream = {scaled(bump, 0.3), lopsided};
-  f.swell = {scaled(lopsided, 0.005), bump};
-  f.shape = {{{{0.1, 2, 0.4}}}, {{{1, 2, -0.3}}}};
-  f.pressure = {{{{0.5, 2, 0.2}}}, {{{1, 2, 0.9}}}};
-  return {"periodic", f, {0, 2}, true, {}, 0.1};
-}
-
-// The void fraction changes on the walls too, and the pressure has a gradient there.
-Setting make_box() {
-  Setting s{"no-slip walls", make_periodic().flow, {2, 1}, false, symmetry_on({low(0), high(0)}), 0.02};
-  s.flow.shape = {{{{0.15, 1.3, 0.4}}}, {{{1, 1.5, -0.3}}}};
-  s.flow.pressure = {{{{0.5, 1, 0.4}}}, {{{1, 1.2, 0.9}}}};
-  return s;
-}
-
-// Mirrored at every wall: U_a = sin(pi a) cos(pi b), and so on.
-Setting make_slip_box() {
-  Flow f;
-  f.stream = {{{{0.2, 1, -M_PI / 2}}}, {{{1, 1, -M_PI / 2}, {0.3, 2, -M_PI / 2}}}};
-  f.swell = {{{{0.02, 1, 0}}}, {{{1, 1, 0}}}};
-  f.shape = {{{{0.15, 1, 0}}}, {{{1, 1, 0}}}};
-  f.pressure = {{{{0.5, 1, 0}}}, {{{1, 2, 0}}}};
-  return {"slip walls", f, {0, 1}, false, symmetry_on({low(0), high(0), low(1), high(1), low(2), high(2)})};
-}
-
-// Uniform inflow at b = 0; no pressure and no gradient of the velocity at b = 1.
-Setting make_duct() {
-  Flow f;
-  f.through = 0.8;
-  f.stream = {{{{0.1, 1, -M_PI / 2}}}, {{{8.0 / 9, 0, 0}, {-1, 1, 0}, {1.0 / 9, 3, 0}}}};
-  f.shape = {{{{0.15, 1, 0}}}, {{{1, 0.5, -M_PI / 2}}}};
-  f.pressure = {{{{0.5, 0, 0}, {0.3, 1, 0}}}, {{{1, 0.5, 0}}}};
-  auto patches = symmetry_on({low(1), high(1), low(2), high(2)});
-  patches.push_back({"inlet", low(0), {}, Inlet{0.8, {}}, "case.yaml:2"});
-  patches.push_back({"outlet", high(0), {}, Outlet{0}, "case.yaml:3"});
-  return {"inlet and outlet", f, {2, 0}, false, patches};
-}
-
-class ManufacturedFlow : public testing::TestWithParam<Setting (*)()> {};
+class ManufacturedFlow : public testing::TestWithParam<Kind> {};
 
 // Second order; 1.9 leaves room for cells that are not yet fine.
 TEST_P(ManufacturedFlow, OrderInSpace) {
-  const Setting setting = GetParam()();
+  const Setting setting = GetParam().make();
   for (const auto& [scheme, name] :
        {std::pair{Convection::central, "central"}, std::pair{Convection::quick, "quick"}}) {
     for (const bool stretched : {false, true}) {
@@ -286,7 +203,7 @@ TEST_P(ManufacturedFlow, OrderInSpace) {
 
 // Implicit Euler. The error in space is the same at all steps and leaves the differences between them.
 TEST_P(ManufacturedFlow, OrderInTime) {
-  const Setting setting = GetParam()();
+  const Setting setting = GetParam().make();
   std::vector<std::unique_ptr<Marcher>> runs;
   for (const int steps : {16, 32, 64, 128}) {
     runs.push_back(std::make_unique<Marcher>(
@@ -303,7 +220,10 @@ TEST_P(ManufacturedFlow, OrderInTime) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Boundaries, ManufacturedFlow,
-                         testing::Values(&make_periodic, &make_box, &make_slip_box, &make_duct));
+                         testing::ValuesIn(std::vector<Kind>{{"periodic", make_periodic},
+                                                             {"no_slip_walls", make_box},
+                                                             {"slip_walls", make_slip_box},
+                                                             {"duct", make_duct}}));
 
 }  // namespace
 }  // namespace pellicle::cfd

@@ -1,0 +1,428 @@
+#include "cfd/scalar_transport.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "cfd/convection_schemes.hpp"
+#include "core/error.hpp"
+
+namespace pellicle::cfd {
+
+namespace {
+
+HostArray<Real> make_array(const std::string& label, Index size) {
+  return HostArray<Real>(label, static_cast<std::size_t>(size));
+}
+
+}  // namespace
+
+ScalarTransport::ScalarTransport(std::string name, const FlowGeometry& geometry, const Boundaries& boundaries,
+                                 const std::vector<ScalarBoundary>& patches, const ScalarOptions& options,
+                                 Convection scheme, Real density)
+    : name_(std::move(name)),
+      geometry_(geometry),
+      boundaries_(boundaries),
+      options_(options),
+      scheme_(scheme),
+      density_(density),
+      conductance_(make_face_field(geometry.stencil, "cfd::scalar_transport::conductance")),
+      correction_(make_face_field(geometry.stencil, "cfd::scalar_transport::correction")),
+      linear_solver_(geometry.stencil.cells()) {
+  const Index n = geometry.stencil.cells();
+  value_ = make_array("cfd::scalar_transport::value", n);
+  excess_ = make_array("cfd::scalar_transport::excess", n);
+  old_ = make_array("cfd::scalar_transport::old", n);
+  own_ = make_array("cfd::scalar_transport::own", n);
+  base_ = make_array("cfd::scalar_transport::base", n);
+  storage_ = make_array("cfd::scalar_transport::storage", n);
+  rhs_ = make_array("cfd::scalar_transport::rhs", n);
+  flagged_.assign(static_cast<std::size_t>(n), 0);
+  for (std::size_t d = 0; d < 6; ++d) {
+    near_[d] = make_array("cfd::scalar_transport::near" + std::to_string(d), n);
+    boundary_values_[d].resize(boundaries.values[d].size());
+  }
+  for (const BoundaryPiece& piece : boundaries.pieces) {
+    piece_conditions_.push_back(piece.patch < 0 ? ScalarBoundary{}
+                                                : patches.at(static_cast<std::size_t>(piece.patch)));
+  }
+  balance_.into.assign(patches.size(), 0);
+  check(patches);
+}
+
+void ScalarTransport::check(const std::vector<ScalarBoundary>& patches) const {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(fmt::format("gas: {}: {}", name_, what));
+  };
+  if (!(options_.capacity > 0)) refuse("the heat capacity is not positive; allowed: > 0 J/kg/K");
+  if (!(options_.conductivity >= 0)) refuse("the conductivity is negative; allowed: at least 0");
+  if (!std::isfinite(options_.initial) || !std::isfinite(options_.reference)) {
+    refuse("the initial or the reference value is no finite number; allowed: a number");
+  }
+  if (patches.size() != boundaries_.patch_names.size()) {
+    throw std::invalid_argument("a scalar needs as many boundary conditions as there are patches");
+  }
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    const bool inward = piece.kind == PieceKind::inlet && piece.outward * piece.velocity[piece.axis] < 0;
+    if (inward && !std::holds_alternative<GivenValue>(piece_conditions_[b])) {
+      refuse(fmt::format("inlet '{}' brings gas of no given value; allowed: a value",
+                         boundaries_.patch_names[static_cast<std::size_t>(piece.patch)]));
+    }
+    if (const auto* wall = std::get_if<Surroundings>(&piece_conditions_[b])) {
+      if (!(wall->coefficient >= 0)) refuse("a transfer coefficient is negative; allowed: at least 0");
+    }
+  }
+}
+
+void ScalarTransport::initialise(const GasFields& fields) {
+  HostArray<Real> uniform("cfd::scalar_transport::uniform", value_.extent(0));
+  Kokkos::deep_copy(uniform, options_.initial);
+  initialise(fields, uniform);
+}
+
+void ScalarTransport::initialise(const GasFields& fields, const HostArray<Real>& value) {
+  if (value.extent(0) != value_.extent(0)) {
+    throw std::invalid_argument("the initial scalar has another size than the gas grid");
+  }
+  for (std::size_t c = 0; c < value.extent(0); ++c) excess_(c) = value(c) - options_.reference;
+  publish();
+  balance_ = ScalarBalance{};
+  balance_.into.assign(boundaries_.patch_names.size(), 0);
+  update_stock(fields);
+  balance_.initial = balance_.stock;
+}
+
+// Half cells in series, as drag and pressure are at the faces: at a jump of eps the gas-poor side decides.
+void ScalarTransport::prepare(const GasFields& fields) {
+  const char* labels[] = {"cfd::scalar_transport::prepare_x", "cfd::scalar_transport::prepare_y",
+                          "cfd::scalar_transport::prepare_z"};
+  const Real* eps = fields.void_fraction.data();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const AxisMetrics& metrics = geometry_.axis[a];
+    for_faces(labels[a], geometry_.stencil, axis, [&](Index f, Index m, Index p, Index position, Index) {
+      const auto at = static_cast<std::size_t>(position);
+      const Real wm = metrics.series_minus[at];
+      const Real eps_f = 1 / (wm / eps[m] + (1 - wm) / eps[p]);
+      conductance_[a](f) = options_.conductivity * eps_f * geometry_.area[a](f) / metrics.distance[at];
+    });
+    copy_periodic_faces(geometry_.stencil, axis, conductance_[a]);
+  }
+}
+
+ScalarTransport::PieceTerms ScalarTransport::piece_terms(const GasFields& fields, std::size_t b) const {
+  const BoundaryPiece& piece = boundaries_.pieces[b];
+  const ScalarBoundary& condition = piece_conditions_[b];
+  const Real half = options_.conductivity * fields.void_fraction(piece.cell) * piece.area / piece.half_width;
+  PieceTerms terms;
+  if (const auto* given = std::get_if<GivenValue>(&condition)) {
+    terms.given = given->value - options_.reference;
+    const bool open = piece.kind == PieceKind::inlet || piece.kind == PieceKind::outlet;
+    if (open) terms.inflow = options_.capacity * density_ * std::max(-fields.piece_flow[b], Real{0});
+    // Through an open face nothing is conducted against gas that leaves, nor through an outlet.
+    if (!open || (piece.kind == PieceKind::inlet && terms.inflow > 0)) terms.conductance = half;
+  }
+  if (const auto* wall = std::get_if<Surroundings>(&condition)) {
+    terms.given = wall->value - options_.reference;
+    // The surface and the half cell in series.
+    const Real surface = wall->coefficient * piece.area;
+    terms.conductance = surface + half > 0 ? surface * half / (surface + half) : 0;
+  }
+  return terms;
+}
+
+void ScalarTransport::set_boundary_values(const GasFields& fields) {
+  for (auto& side : boundary_values_) std::fill(side.begin(), side.end(), FaceOfBoundary{});
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    const PieceTerms terms = piece_terms(fields, b);
+    const auto side = static_cast<std::size_t>(2 * piece.axis + (piece.outward > 0 ? 1 : 0));
+    const Real share = piece.area / geometry_.area[static_cast<std::size_t>(piece.axis)](piece.face);
+    // How far the face's value is from the cell's towards the given one.
+    Real towards = terms.inflow > 0 ? 1 : 0;
+    const Real half =
+        options_.conductivity * fields.void_fraction(piece.cell) * piece.area / piece.half_width;
+    if (terms.conductance > 0) towards = terms.conductance / half;
+    FaceOfBoundary& value = boundary_values_[side][static_cast<std::size_t>(piece.place)];
+    value.fixed += share * towards * terms.given;
+    value.free += share * (1 - towards);
+  }
+}
+
+// (own) v = sum of near v_N + base, without the correction of the convection scheme.
+void ScalarTransport::assemble(const GasFields& fields, Real dt, const ScalarSource& source) {
+  const Stencil& s = geometry_.stencil;
+  const bool sources = source.rate.extent(0) > 0;
+  const Real* volume = geometry_.volume.data();
+  for_entries("cfd::scalar_transport::storage", s.cells(), [&](Index c) {
+    const Real inertia = options_.capacity * density_ * fields.void_fraction_old(c) * volume[c] / dt;
+    const Real taken = sources ? volume[c] * source.coefficient(c) : 0;
+    storage_(c) = inertia + taken;
+    base_(c) = inertia * old_(c);
+    if (sources) base_(c) += volume[c] * source.rate(c) - taken * options_.reference;
+  });
+  for_rows("cfd::scalar_transport::assemble", s, [&](const Index r) {
+    const Row row = s.row(r);
+    for (Index i = 0; i < s.n.x; ++i) own_(row.cell + i) = storage_(row.cell + i);
+    const Index first[3] = {row.x_face, row.y_face, row.z_face};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const Index step = s.face_step(axis);
+      for (Index i = 0; i < s.n.x; ++i) {
+        const Index c = row.cell + i;
+        const Index f = first[axis] + i;
+        const Real minus = options_.capacity * std::max(fields.mass_flux[a](f), Real{0}) + conductance_[a](f);
+        const Real plus =
+            options_.capacity * std::max(-fields.mass_flux[a](f + step), Real{0}) + conductance_[a](f + step);
+        near_[2 * a](c) = minus;
+        near_[2 * a + 1](c) = plus;
+        own_(c) += minus + plus;
+      }
+    }
+  });
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const Index c = boundaries_.pieces[b].cell;
+    const PieceTerms terms = piece_terms(fields, b);
+    own_(c) += terms.inflow + terms.conductance;
+    base_(c) += (terms.inflow + terms.conductance) * terms.given;
+  }
+}
+
+template <Convection scheme>
+void ScalarTransport::compute_correction(const GasFields& fields) {
+  const char* labels[] = {"cfd::scalar_transport::correction_x", "cfd::scalar_transport::correction_y",
+                          "cfd::scalar_transport::correction_z"};
+  const Stencil& s = geometry_.stencil;
+  const Real* v = excess_.data();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    for_faces(labels[a], s, axis, [&](Index f, Index minus, Index plus, Index position, Index place) {
+      const Real flux = options_.capacity * fields.mass_flux[a](f);
+      const bool forward = flux >= 0;
+      const FaceNeighbours near = find_neighbours(s, geometry_.axis[a], axis, forward, minus, plus, position);
+      const Real central = v[near.central];
+      const Real face =
+          face_value<scheme>(central, v[near.downstream], near.linear_central, *near.quick, [&] {
+            if (!near.beyond) return Upstream{v[near.upstream], false};
+            const FaceOfBoundary& edge =
+                boundary_values_[2 * a + (forward ? 0 : 1)][static_cast<std::size_t>(place)];
+            return Upstream{2 * (edge.fixed + edge.free * central) - central, true};
+          });
+      correction_[a](f) = flux * (face - central);
+    });
+    copy_periodic_faces(s, axis, correction_[a]);
+  }
+}
+
+void ScalarTransport::compute_correction(const GasFields& fields) {
+  switch (scheme_) {
+    case Convection::upwind:
+      break;
+    case Convection::ultimate_quickest:
+      compute_correction<Convection::ultimate_quickest>(fields);
+      break;
+    case Convection::central:
+      compute_correction<Convection::central>(fields);
+      break;
+    case Convection::quick:
+      compute_correction<Convection::quick>(fields);
+      break;
+  }
+}
+
+void ScalarTransport::collect_right_side() {
+  const Stencil& s = geometry_.stencil;
+  for_rows("cfd::scalar_transport::right_side", s, [&](const Index r) {
+    const Row row = s.row(r);
+    const Index first[3] = {row.x_face, row.y_face, row.z_face};
+    for (Index i = 0; i < s.n.x; ++i) {
+      Real in = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto& flux = correction_[static_cast<std::size_t>(axis)];
+        in += flux(first[axis] + i) - flux(first[axis] + i + s.face_step(axis));
+      }
+      rhs_(row.cell + i) = base_(row.cell + i) + in;
+    }
+  });
+}
+
+// take(cell, sum of near x_N) for every cell.
+template <class Take>
+void ScalarTransport::apply(const char* label, const Real* x, Take&& take) const {
+  const Stencil& s = geometry_.stencil;
+  for_rows(label, s, [&](const Index r) {
+    const Row row = s.row(r);
+    const auto coefficient = [&](std::size_t d) { return near_[d].data() + row.cell; };
+    const Real *xm = coefficient(0), *xp = coefficient(1), *ym = coefficient(2), *yp = coefficient(3),
+               *zm = coefficient(4), *zp = coefficient(5);
+    const Real *own = x + row.cell, *y_minus = x + row.y_minus, *y_plus = x + row.y_plus;
+    const Real *z_minus = x + row.z_minus, *z_plus = x + row.z_plus;
+    along_row(row, s.n.x, [&](Index i, Index left, Index right) {
+      take(row.cell + i, (xm[i] * own[left] + xp[i] * own[right]) + (ym[i] * y_minus[i] + yp[i] * y_plus[i]) +
+                             (zm[i] * z_minus[i] + zp[i] * z_plus[i]));
+    });
+  });
+}
+
+TransportReport ScalarTransport::solve() {
+  collect_right_side();
+  Real* right_side = linear_solver_.right_side().data();
+  for_entries("cfd::scalar_transport::divide", geometry_.stencil.cells(),
+              [&](Index c) { right_side[c] = rhs_(c) / own_(c); });
+  constexpr int max_iterations = 1000;
+  const TransportReport report = linear_solver_.solve(
+      excess_.data(),
+      [&](const Real* x, auto&& take) {
+        apply("cfd::scalar_transport::near", x, [&](Index c, Real near) { take(c, near / own_(c)); });
+      },
+      options_.tolerance, max_iterations);
+  if (!report.converged) {
+    throw RunError(fmt::format("gas: the {} did not converge in {} iterations (relative residual {:.3g})",
+                               name_, report.iterations, report.residual));
+  }
+  return report;
+}
+
+// The discrete maximum principle: a value lies between those that the cells had before, those at the boundaries, and
+// those that the sources drive to; a source without such a value moves the bounds by what it does to a cell alone.
+ScalarTransport::Bounds ScalarTransport::find_bounds(const GasFields& fields, Real dt,
+                                                     const ScalarSource& source) const {
+  Bounds bounds{old_(0), old_(0)};
+  const auto include = [&](Real v) {
+    bounds.low = std::min(bounds.low, v);
+    bounds.high = std::max(bounds.high, v);
+  };
+  const Index n = geometry_.stencil.cells();
+  for (Index c = 0; c < n; ++c) include(old_(c));
+  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    const PieceTerms terms = piece_terms(fields, b);
+    if (terms.inflow + terms.conductance > 0) include(terms.given);
+  }
+  if (source.rate.extent(0) == 0) return bounds;
+  Real rise = 0, fall = 0;
+  for (Index c = 0; c < n; ++c) {
+    const Real taken = source.coefficient(c);
+    const Real rate = source.rate(c) - taken * options_.reference;
+    if (taken > 0) {
+      include(rate / taken);
+    } else {
+      const Real change = rate * dt / (options_.capacity * density_ * fields.void_fraction_old(c));
+      rise = std::max(rise, change);
+      fall = std::min(fall, change);
+    }
+  }
+  return {bounds.low + fall, bounds.high + rise};
+}
+
+// Flags the cells that are out of bounds; returns how many were not flagged before.
+int ScalarTransport::flag_cells_beyond(const Bounds& bounds) {
+  // Ten times what a linear solve leaves.
+  const Real slack = 10 * options_.tolerance * std::max(std::abs(bounds.low), std::abs(bounds.high));
+  int found = 0;
+  for (Index c = 0; c < geometry_.stencil.cells(); ++c) {
+    auto& flag = flagged_[static_cast<std::size_t>(c)];
+    if (flag == 0 && (excess_(c) < bounds.low - slack || excess_(c) > bounds.high + slack)) {
+      flag = 1;
+      ++found;
+    }
+  }
+  return found;
+}
+
+void ScalarTransport::drop_flagged_corrections() {
+  const char* labels[] = {"cfd::scalar_transport::drop_x", "cfd::scalar_transport::drop_y",
+                          "cfd::scalar_transport::drop_z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    for_faces(labels[a], geometry_.stencil, axis, [&](Index f, Index m, Index p, Index, Index) {
+      if (flagged_[static_cast<std::size_t>(m)] != 0 || flagged_[static_cast<std::size_t>(p)] != 0) {
+        correction_[a](f) = 0;
+      }
+    });
+    copy_periodic_faces(geometry_.stencil, axis, correction_[a]);
+  }
+}
+
+// The limiter keeps the value within bounds once the deferred correction has converged; it need not have. Where the
+// value is out of bounds the cell's faces go back to upwind, for which it cannot be: the balance stays closed.
+void ScalarTransport::stay_within_bounds(const Bounds& bounds, ScalarReport& report) {
+  std::fill(flagged_.begin(), flagged_.end(), char{0});
+  // Every round flags further cells, so this ends: with all of them flagged the scheme is upwind.
+  while (const int found = flag_cells_beyond(bounds)) {
+    report.returned += found;
+    drop_flagged_corrections();
+    report.iterations += solve().iterations;
+    ++report.solves;
+  }
+}
+
+ScalarReport ScalarTransport::update(const GasFields& fields, Real dt, const ScalarSource& source) {
+  if (source.rate.extent(0) != source.coefficient.extent(0) ||
+      (source.rate.extent(0) > 0 && source.rate.extent(0) != value_.extent(0))) {
+    throw std::invalid_argument("the scalar's source has another size than the gas grid");
+  }
+  Kokkos::deep_copy(old_, excess_);
+  prepare(fields);
+  set_boundary_values(fields);
+  assemble(fields, dt, source);
+  const Bounds bounds = find_bounds(fields, dt, source);
+  const Real range = bounds.high - bounds.low;
+  ScalarReport report;
+  HostArray<Real>& before = value_;  // written anew at the end of the step
+  bool done = false;
+  while (!done) {
+    Kokkos::deep_copy(before, excess_);
+    compute_correction(fields);
+    report.iterations += solve().iterations;
+    ++report.solves;
+    Real change = 0;
+    for (std::size_t c = 0; c < before.extent(0); ++c)
+      change = std::max(change, std::abs(excess_(c) - before(c)));
+    done = scheme_ == Convection::upwind || report.solves >= options_.max_corrections ||
+           !(change > options_.correction_tolerance * range);
+  }
+  if (scheme_ == Convection::ultimate_quickest) stay_within_bounds(bounds, report);
+  finish(fields, dt, source);
+  return report;
+}
+
+// The balance of what was exchanged, and the value once more in flux form: what the linear solve leaves would add up
+// in the balance over many steps.
+void ScalarTransport::finish(const GasFields& fields, Real dt, const ScalarSource& source) {
+  add_boundaries_to_balance(fields, dt);
+  add_leftover_to_balance(fields, dt);
+  Real* residual = linear_solver_.right_side().data();
+  apply("cfd::scalar_transport::residual", excess_.data(),
+        [&](Index c, Real near) { residual[c] = rhs_(c) + near - own_(c) * excess_(c); });
+  const Index n = geometry_.stencil.cells();
+  for_entries("cfd::scalar_transport::flux_form", n,
+              [&](Index c) { excess_(c) += residual[c] / storage_(c); });
+  if (source.rate.extent(0) > 0) {
+    const auto given = [&](Index c) {
+      return geometry_.volume(c) *
+             (source.rate(c) - source.coefficient(c) * (options_.reference + excess_(c)));
+    };
+    balance_.sources += dt * sum_("cfd::scalar_transport::sources", n, given);
+    balance_.gross +=
+        dt * sum_("cfd::scalar_transport::gross", n, [&](Index c) { return std::abs(given(c)); });
+  }
+  publish();
+  update_stock(fields);
+  for (Index c = 0; c < n; ++c) {
+    if (std::isfinite(value_(c))) continue;
+    const Index3 at = geometry_.grid.coordinates(c);
+    throw RunError(
+        fmt::format("gas: the {} is no longer finite, in cell ({}, {}, {})", name_, at.x, at.y, at.z));
+  }
+}
+
+void ScalarTransport::publish() {
+  for_entries("cfd::scalar_transport::publish", geometry_.stencil.cells(),
+              [&](Index c) { value_(c) = options_.reference + excess_(c); });
+}
+
+}  // namespace pellicle::cfd

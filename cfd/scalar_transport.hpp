@@ -1,0 +1,112 @@
+// Transport of one scalar by the gas: implicit finite volumes on the mass fluxes that the gas step ended with.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "cfd/bicgstab.hpp"
+#include "cfd/boundary_pieces.hpp"
+#include "cfd/flow_geometry.hpp"
+#include "cfd/gas_fields.hpp"
+#include "cfd/gas_options.hpp"
+#include "cfd/scalar_balance.hpp"
+#include "cfd/scalar_options.hpp"
+
+namespace pellicle::core {
+class CheckpointWriter;
+class CheckpointReader;
+}  // namespace pellicle::core
+
+namespace pellicle::cfd {
+
+struct ScalarReport {
+  int solves = 0;      ///< linear solves: deferred corrections and returns to upwind
+  int iterations = 0;  ///< of all linear solves together
+  int returned = 0;    ///< cells whose faces went back to upwind to keep the value within its bounds
+};
+
+/// Solves c d(eps rho v)/dt + c div(eps rho u v) = div(eps k grad v) + source for a value v: implicit Euler, convection
+/// by deferred correction, less v times continuity (Patankar 1980), so that a uniform value stays uniform whatever the
+/// void fraction does and whatever continuity leaves. docs/theory/scalars.md has the equations.
+class ScalarTransport {
+ public:
+  /// `patches`: what each patch of the boundaries means for the scalar. Throws InputError for properties out of range
+  /// and for an inlet without a value, naming the scalar as `name`.
+  ScalarTransport(std::string name, const FlowGeometry& geometry, const Boundaries& boundaries,
+                  const std::vector<ScalarBoundary>& patches, const ScalarOptions& options, Convection scheme,
+                  Real density);
+
+  /// Uniform, as the options say; the balance begins anew.
+  void initialise(const GasFields& fields);
+  /// From a value per cell.
+  void initialise(const GasFields& fields, const HostArray<Real>& value);
+  /// Advances by dt [s], from `fields` of the end of a gas step: void fraction old and new, mass fluxes and flows of
+  /// the boundary pieces. Throws RunError if a solve does not converge or a value is not finite.
+  ScalarReport update(const GasFields& fields, Real dt, const ScalarSource& source);
+
+  /// Per cell: [K] or [kg/kg].
+  const HostArray<Real>& value() const { return value_; }
+  const ScalarBalance& balance() const { return balance_; }
+
+  void save(core::CheckpointWriter& writer) const;
+  void load(core::CheckpointReader& reader, const GasFields& fields);
+
+ private:
+  struct Bounds {
+    Real low, high;
+  };
+  /// Value at a boundary face: fixed + free * value in the cell.
+  struct FaceOfBoundary {
+    Real fixed = 0, free = 0;
+  };
+  /// What a boundary piece does to its cell: (inflow + conductance) (given - own).
+  struct PieceTerms {
+    Real inflow = 0;       ///< capacity times mass that comes in with the given value, per second
+    Real conductance = 0;  ///< towards the given value
+    Real given = 0;        ///< less the reference
+  };
+
+  void check(const std::vector<ScalarBoundary>& patches) const;
+  PieceTerms piece_terms(const GasFields& fields, std::size_t piece) const;
+  void prepare(const GasFields& fields);
+  void assemble(const GasFields& fields, Real dt, const ScalarSource& source);
+  void set_boundary_values(const GasFields& fields);
+  template <Convection scheme>
+  void compute_correction(const GasFields& fields);
+  void compute_correction(const GasFields& fields);
+  void collect_right_side();
+  template <class Take>
+  void apply(const char* label, const Real* x, Take&& take) const;
+  TransportReport solve();
+  Bounds find_bounds(const GasFields& fields, Real dt, const ScalarSource& source) const;
+  int flag_cells_beyond(const Bounds& bounds);
+  void drop_flagged_corrections();
+  void stay_within_bounds(const Bounds& bounds, ScalarReport& report);
+  void finish(const GasFields& fields, Real dt, const ScalarSource& source);
+  void add_boundaries_to_balance(const GasFields& fields, Real dt);
+  void add_leftover_to_balance(const GasFields& fields, Real dt);
+  void update_stock(const GasFields& fields);
+  void publish();
+
+  std::string name_;
+  const FlowGeometry& geometry_;
+  const Boundaries& boundaries_;
+  std::vector<ScalarBoundary> piece_conditions_;  ///< of each boundary piece
+  ScalarOptions options_;
+  Convection scheme_;
+  Real density_;
+
+  HostArray<Real> value_, excess_, old_;  ///< excess: value less the reference, the unknown
+  FaceField conductance_;  ///< eps k area / distance of faces with two cells, half cells in series
+  FaceField correction_;   ///< flux of the scheme less that of upwind
+  std::array<std::vector<FaceOfBoundary>, 6> boundary_values_;  ///< per side and place, as Boundaries::values
+  std::array<HostArray<Real>, 6> near_;                         ///< x-, x+, y-, y+, z-, z+
+  HostArray<Real> own_, base_, storage_, rhs_;  ///< storage: what changes with the cell's own value
+  std::vector<char> flagged_;
+  BiCGStab linear_solver_;
+  ScalarBalance balance_;
+  FixedSum sum_;
+};
+
+}  // namespace pellicle::cfd
