@@ -134,16 +134,10 @@ void ContactHistory::pack(const NeighbourList& list) {
 void ContactHistory::reorder(const DeviceArray<std::int32_t>& order, Index before, Index count) {
   if (place_ != Place::packed) return;
   ensure_size(new_place_, static_cast<std::size_t>(before), "dem::contact_history::new_place");
-  ensure_size(row_next_, static_cast<std::size_t>(count), "dem::contact_history::row_next");
   invert_order(order, count, new_place_);
-  const auto row = row_;
-  const auto next = row_next_;
+  follow_rows(order, particles_, count, row_, row_next_);
   const auto new_place = new_place_;
   const auto partner = partner_;
-  const Index known = particles_;
-  Kokkos::parallel_for(
-      "dem::contact_history::follow_rows", DeviceRange(0, count),
-      KOKKOS_LAMBDA(const Index p) { next(p) = order(p) < known ? row(order(p)) : -1; });
   const auto offset = offset_;
   Kokkos::parallel_for(
       "dem::contact_history::follow_partners", DeviceRange(0, packed_rows_), KOKKOS_LAMBDA(const Index r) {
@@ -151,7 +145,6 @@ void ContactHistory::reorder(const DeviceArray<std::int32_t>& order, Index befor
           partner(entry) = partner(entry) < 0 ? -1 : new_place(partner(entry));
         }
       });
-  std::swap(row_, row_next_);
   particles_ = count;
 }
 
@@ -198,20 +191,15 @@ void ContactHistory::load(const core::CheckpointReader& file) {
   packed_rows_ = static_cast<Index>(file.read_int64("dem/history/packed_rows"));
   particles_ = static_cast<Index>(file.read_int64("dem/history/particles"));
   if (packed_rows_ == 0) return;
-  const auto fill = [](auto& array, const auto& values, const char* label) {
-    using T = typename std::decay_t<decltype(array)>::value_type;
-    ensure_size(array, values.size(), label);
-    const Kokkos::View<const T*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(
-        values.data(), values.size());
-    Kokkos::deep_copy(Kokkos::subview(array, std::pair<std::size_t, std::size_t>(0, values.size())), host);
-  };
-  fill(offset_, file.read_int32s("dem/history/offset"), "dem::contact_history::offset_loaded");
-  fill(row_, file.read_int32s("dem/history/row"), "dem::contact_history::row_loaded");
-  fill(partner_, file.read_int32s("dem/history/partner"), "dem::contact_history::partner_loaded");
+  read_array(file, "dem/history/offset", packed_rows_ + 1, offset_, "dem::contact_history::offset_loaded");
+  read_array(file, "dem/history/row", particles_, row_, "dem::contact_history::row_loaded");
+  std::int32_t total = 0;
+  Kokkos::deep_copy(total, Kokkos::subview(offset_, packed_rows_));
+  read_array(file, "dem/history/partner", total, partner_, "dem::contact_history::partner_loaded");
   if (springs_ > 0) {
-    fill(spring_, file.read_vec3s("dem/history/spring"), "dem::contact_history::spring_loaded");
+    read_array(file, "dem/history/spring", total * springs_, spring_, "dem::contact_history::spring_loaded");
   }
-  if (bridges_) fill(state_, file.read_int32s("dem/history/state"), "dem::contact_history::state_loaded");
+  if (bridges_) read_array(file, "dem/history/state", total, state_, "dem::contact_history::state_loaded");
   place_ = Place::packed;
 }
 

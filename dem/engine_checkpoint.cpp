@@ -6,17 +6,6 @@
 #include "dem/engine_arrays.hpp"
 
 namespace pellicle::dem {
-namespace {
-
-template <class T>
-void read_array(const core::CheckpointReader& file, const char* name, const DeviceArray<T>& array) {
-  const auto host = Kokkos::create_mirror_view(array);
-  file.read_into(name, host);
-  Kokkos::deep_copy(array, host);
-}
-
-}  // namespace
-
 void Engine::save(core::CheckpointWriter& file) const {
   const Index n = particles_.count;
   file.write("dem/count", std::int64_t{n});
@@ -79,12 +68,15 @@ void Engine::load(core::CheckpointReader& file) {
     walls_.set_allowances(setup_.skin, setup_.time_step, smallest_radius_, largest_radius_);
   }
   if (n == 0) return;
-  read_array(file, "dem/position_radius", particles_.position_radius);
-  read_array(file, "dem/velocity_spin", particles_.velocity_spin);
-  read_array(file, "dem/mass", particles_.mass);
-  read_array(file, "dem/acceleration", particles_.acceleration);
-  read_array(file, "dem/angular_acceleration", particles_.angular_acceleration);
-  read_array(file, "dem/touching", result_.touching);
+  const auto read = [&](const char* name, auto& array) {
+    read_array(file, name, particles_.count, array, "dem::engine_checkpoint::loaded");
+  };
+  read("dem/position_radius", particles_.position_radius);
+  read("dem/velocity_spin", particles_.velocity_spin);
+  read("dem/mass", particles_.mass);
+  read("dem/acceleration", particles_.acceleration);
+  read("dem/angular_acceleration", particles_.angular_acceleration);
+  read("dem/touching", result_.touching);
   history_.load(file);
   walls_.load(file);
   canonicalise();

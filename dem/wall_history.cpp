@@ -50,14 +50,7 @@ void WallHistory::pack(const WallList& list, Index particles) {
 
 void WallHistory::reorder(const DeviceArray<std::int32_t>& order, Index count) {
   if (place_ != Place::packed) return;
-  ensure_size(row_next_, static_cast<std::size_t>(count), "dem::wall_history::row_next");
-  const auto row = row_;
-  const auto next = row_next_;
-  const Index known = particles_;
-  Kokkos::parallel_for(
-      "dem::wall_history::reorder", DeviceRange(0, count),
-      KOKKOS_LAMBDA(const Index p) { next(p) = order(p) < known ? row(order(p)) : -1; });
-  std::swap(row_, row_next_);
+  follow_rows(order, particles_, count, row_, row_next_);
   particles_ = count;
 }
 
@@ -103,17 +96,11 @@ void WallHistory::load(const core::CheckpointReader& file) {
   packed_rows_ = static_cast<Index>(file.read_int64("dem/wall_history/rows"));
   particles_ = static_cast<Index>(file.read_int64("dem/wall_history/particles"));
   if (particles_ == 0) return;
-  const auto fill = [&file](auto& array, const char* name, Index size, const char* label) {
-    ensure_size(array, static_cast<std::size_t>(size), label);
-    const auto part = Kokkos::subview(array, std::pair<Index, Index>(0, size));
-    const auto host = Kokkos::create_mirror_view(part);
-    file.read_into(name, host);
-    Kokkos::deep_copy(part, host);
-  };
-  fill(row_, "dem/wall_history/row", particles_, "dem::wall_history::row_loaded");
-  fill(packed_.memory, "dem/wall_history/memory", packed_rows_, "dem::wall_history::memory_loaded");
-  fill(packed_.spring, "dem/wall_history/spring", packed_rows_ * most_wall_contacts * springs_,
-       "dem::wall_history::spring_loaded");
+  read_array(file, "dem/wall_history/row", particles_, row_, "dem::wall_history::row_loaded");
+  read_array(file, "dem/wall_history/memory", packed_rows_, packed_.memory,
+             "dem::wall_history::memory_loaded");
+  read_array(file, "dem/wall_history/spring", packed_rows_ * most_wall_contacts * springs_, packed_.spring,
+             "dem::wall_history::spring_loaded");
   place_ = Place::packed;
 }
 

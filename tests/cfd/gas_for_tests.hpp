@@ -70,4 +70,18 @@ inline HostArray<Vec3> copy_of(const HostArray<Vec3>& a) {
   return b;
 }
 
+/// A bed whose solids move to and fro (a spout of fewer of them in the middle), as the exchange at a time [s] tells the gas.
+inline void set_moving_bed(const CartesianGrid& grid, Real time, ParticleExchange& exchange) {
+  for (Index c = 0; c < grid.cell_count(); ++c) {
+    const Index3 at = grid.coordinates(c);
+    const Real x = grid.center(0, at.x);
+    const Real z = grid.center(2, at.z);
+    const bool spout = std::abs(x - 0.033) < 0.006;
+    const Real solids = z > 0.1 ? 0 : (spout ? 0.1 : 0.5) + 0.08 * std::sin(60 * time + 200 * z + 150 * x);
+    exchange.void_fraction(c) = 1 - solids;
+    exchange.exchange_coefficient(c) = 5000 * solids;
+    exchange.explicit_force(c) = {0, 10 * solids, -300 * solids};
+  }
+}
+
 }  // namespace pellicle::cfd

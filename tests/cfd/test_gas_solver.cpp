@@ -36,18 +36,7 @@ struct MovingBed {
     set_particles(0);
     solver->initialise(Vec3{0, 0, 1.5}, exchange.void_fraction);
   }
-  void set_particles(Real time) {
-    for (Index c = 0; c < grid.cell_count(); ++c) {
-      const Index3 at = grid.coordinates(c);
-      const Real x = grid.center(0, at.x);
-      const Real z = grid.center(2, at.z);
-      const bool spout = std::abs(x - 0.033) < 0.006;
-      const Real solids = z > 0.1 ? 0 : (spout ? 0.1 : 0.5) + 0.08 * std::sin(60 * time + 200 * z + 150 * x);
-      exchange.void_fraction(c) = 1 - solids;
-      exchange.exchange_coefficient(c) = 5000 * solids;
-      exchange.explicit_force(c) = {0, 10 * solids, -300 * solids};
-    }
-  }
+  void set_particles(Real time) { set_moving_bed(grid, time, exchange); }
   void advance_to_step(int end) {
     for (; step < end; ++step) {
       set_particles(1e-4 * (step + 1));

@@ -76,18 +76,7 @@ class CarryingBed {
     options.reference = reference;
     return options;
   }
-  void set_particles(Real time) {
-    const CartesianGrid& grid = solver_.grid();
-    for (Index c = 0; c < grid.cell_count(); ++c) {
-      const Index3 at = grid.coordinates(c);
-      const Real x = grid.center(0, at.x);
-      const Real z = grid.center(2, at.z);
-      const bool spout = std::abs(x - 0.033) < 0.006;
-      const Real solids = z > 0.1 ? 0 : (spout ? 0.1 : 0.5) + 0.08 * std::sin(60 * time + 200 * z + 150 * x);
-      exchange_.void_fraction(c) = 1 - solids;
-      exchange_.exchange_coefficient(c) = 5000 * solids;
-    }
-  }
+  void set_particles(Real time) { set_moving_bed(solver_.grid(), time, exchange_); }
   // No patch's edge cuts a face here, so a face's flow is that of its piece.
   void take_fields() {
     Kokkos::deep_copy(gas_.fields.void_fraction, solver_.state().void_fraction);
