@@ -27,6 +27,7 @@ inline void make_tight(GasOptions& options) {
 
 inline std::vector<BoundaryPatch> symmetry_on(const std::vector<Side>& sides) {
   std::vector<BoundaryPatch> patches;
+  patches.reserve(sides.size());
   for (const Side side : sides)
     patches.push_back({std::string(name_of(side)), side, {}, Symmetry{}, "case.yaml:1"});
   return patches;
