@@ -1,12 +1,14 @@
 // Boundaries of the gas: named regions on the faces of the domain.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "cfd/scalar_options.hpp"
 #include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
@@ -46,6 +48,8 @@ struct BoundaryPatch {
       region;  ///< the part of the side inside this box; unset: what no region of that side takes
   std::variant<Inlet, Outlet, NoSlip, FreeSlip, Symmetry> kind;
   std::string where;  ///< `file:line: key`, opens messages about this patch
+  std::array<ScalarBoundary, scalar_count>
+      scalars{};  ///< what scalars meet here; of use where they are solved
 };
 
 }  // namespace pellicle::cfd

@@ -46,6 +46,9 @@ void GasSolver::save(core::CheckpointWriter& writer) const {
   writer.write("gas/balance/mass_in", in);
   writer.write("gas/balance/mass_out", out);
   for_totals(s.balance, [&](const char* name, const Vec3& total) { writer.write(name, total); });
+  for (const auto& scalar : s.scalars) {
+    if (scalar) scalar->save(writer);
+  }
 }
 
 void GasSolver::load(core::CheckpointReader& reader) {
@@ -76,6 +79,9 @@ void GasSolver::load(core::CheckpointReader& reader) {
   s.balance.mass_initial = reader.read_double("gas/balance/mass_initial");
   for_totals(s.balance, [&](const char* name, Vec3& total) { total = reader.read_vec3(name); });
   s.update_stocks();
+  for (auto& scalar : s.scalars) {
+    if (scalar) scalar->load(reader, s.fields);
+  }
   s.pressure_solver.drop();
 }
 

@@ -1,8 +1,11 @@
 // What a case chooses about the gas: properties, schemes, tolerances.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string_view>
 
+#include "cfd/scalar_options.hpp"
 #include "core/model_list.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
@@ -49,6 +52,7 @@ struct GasOptions {
   Vec3 body_force;  ///< on the gas, besides gravity, per volume of gas [N/m3]
   Convection convection = Convection::ultimate_quickest;
   GasSolverOptions solver;
+  std::array<std::optional<ScalarOptions>, scalar_count> scalars{};  ///< those that are solved, see Scalar
 };
 
 }  // namespace pellicle::cfd

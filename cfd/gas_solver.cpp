@@ -69,6 +69,14 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
   state.void_fraction_old = fields.void_fraction_old;
   state.superficial_velocity = fields.superficial;
   for (const std::string& name : boundaries.patch_names) balance.patches.push_back({name, 0, 0});
+  for (std::size_t i = 0; i < scalar_count; ++i) {
+    if (!options.scalars[i]) continue;
+    std::vector<ScalarBoundary> conditions;
+    for (const BoundaryPatch& patch : patches) conditions.push_back(patch.scalars[i]);
+    scalars[i].emplace(std::string(scalar_names[i]), geometry, boundaries, conditions, *options.scalars[i],
+                       options.convection, options.density);
+    state.scalars[i] = scalars[i]->value();
+  }
 }
 
 void GasSolver::Impl::initialise(const HostArray<Real>& void_fraction) {
@@ -107,6 +115,9 @@ void GasSolver::Impl::initialise(const HostArray<Real>& void_fraction) {
   update_stocks();
   balance.mass_initial = balance.mass;
   balance.momentum_initial = balance.momentum;
+  for (auto& scalar : scalars) {
+    if (scalar) scalar->initialise(fields);
+  }
 }
 
 void GasSolver::Impl::take_exchange(const ParticleExchange& exchange, Real dt) {
@@ -308,6 +319,15 @@ void GasSolver::Impl::copy_velocity_to_state() {
   }
 }
 
+void GasSolver::Impl::update_scalars(Real dt, const ParticleExchange& exchange, StepReport& report) {
+  for (std::size_t i = 0; i < scalar_count; ++i) {
+    if (!scalars[i]) continue;
+    const ScalarReport scalar = scalars[i]->update(fields, dt, exchange.scalars[i]);
+    report.scalar_iterations += scalar.iterations;
+    report.scalar_cells_returned += scalar.returned;
+  }
+}
+
 void GasSolver::Impl::finish_step(Real dt, StepReport& report) {
   faces.compute_pressure_gradient(fields, state.pressure_gradient);
   copy_velocity_to_state();
@@ -426,6 +446,7 @@ StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
     report.velocity_change = s.face_velocity_change();
     done = last || (nearly_there && report.velocity_change < options.outer_tolerance);
   }
+  s.update_scalars(dt, exchange, report);
   s.finish_step(dt, report);
   return report;
 }
@@ -434,6 +455,10 @@ const CartesianGrid& GasSolver::grid() const { return impl_->geometry.grid; }
 const GasOptions& GasSolver::options() const { return impl_->options; }
 const GasState& GasSolver::state() const { return impl_->state; }
 const GasBalance& GasSolver::balance() const { return impl_->balance; }
+const ScalarBalance* GasSolver::balance(Scalar scalar) const {
+  const auto& transport = impl_->scalars[index_of(scalar)];
+  return transport ? &transport->balance() : nullptr;
+}
 
 Real GasSolver::patch_pressure(const std::string& name) const {
   const Impl& s = *impl_;

@@ -9,6 +9,7 @@
 #include "cfd/gas_balance.hpp"
 #include "cfd/gas_options.hpp"
 #include "cfd/gas_state.hpp"
+#include "cfd/scalar_balance.hpp"
 #include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
@@ -23,19 +24,22 @@ namespace pellicle::cfd {
 /// What a step cost and how well it converged.
 struct StepReport {
   int outer_iterations = 0;
-  int pressure_iterations = 0;   ///< of the linear solver, all outer iterations together
-  int momentum_iterations = 0;   ///< likewise
-  Real continuity_residual = 0;  ///< sum of |mass residuals| / gas throughput, after the last pressure solve
-  Real momentum_residual = 0;    ///< relative, after the last momentum solve
-  Real velocity_change = 0;      ///< relative change of the face velocities by the last outer iteration
-  Real courant_number = 0;       ///< largest sum over axes of |u| dt / cell width
+  int pressure_iterations = 0;    ///< of the linear solver, all outer iterations together
+  int momentum_iterations = 0;    ///< likewise
+  Real continuity_residual = 0;   ///< sum of |mass residuals| / gas throughput, after the last pressure solve
+  Real momentum_residual = 0;     ///< relative, after the last momentum solve
+  Real velocity_change = 0;       ///< relative change of the face velocities by the last outer iteration
+  int scalar_iterations = 0;      ///< of all scalars' linear solves
+  int scalar_cells_returned = 0;  ///< cells where a scalar's bounds asked for upwind
+  Real courant_number = 0;        ///< largest sum over axes of |u| dt / cell width
 };
 
 /// Solves d(eps rho)/dt + div(eps rho u) = 0 and
 /// d(eps rho u)/dt + div(eps rho u u) = -eps grad p + div(eps tau) - beta u + F (model A; Anderson & Jackson 1967)
 /// by finite volumes on a collocated Cartesian grid: SIMPLEC (Van Doormaal & Raithby 1984), face velocities by a
 /// consistent momentum interpolation (Cubero & Fueyo 2007), forces that jump balanced at the faces (Mencinger &
-/// Zun 2007), implicit Euler. docs/theory/gas.md has the equations.
+/// Zun 2007), implicit Euler; then the scalars that the options name, on the step's final fluxes. docs/theory/gas.md
+/// and docs/theory/scalars.md have the equations.
 class GasSolver {
  public:
   /// A side without a patch is a no-slip wall at rest. Throws InputError for patches that overlap, cover no face,
@@ -60,6 +64,8 @@ class GasSolver {
   const GasOptions& options() const;
   const GasState& state() const;
   const GasBalance& balance() const;
+  /// Totals of a scalar; null where it is not solved.
+  const ScalarBalance* balance(Scalar scalar) const;
 
   /// Area-averaged pressure over a patch [Pa]; throws std::invalid_argument for an unknown name.
   Real patch_pressure(const std::string& name) const;

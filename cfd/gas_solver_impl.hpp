@@ -1,6 +1,8 @@
 // Inside of GasSolver; only its own files include this.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "cfd/gas_solver.hpp"
 #include "cfd/momentum.hpp"
 #include "cfd/pressure_system.hpp"
+#include "cfd/scalar_transport.hpp"
 
 namespace pellicle::cfd {
 
@@ -28,6 +31,7 @@ struct GasSolver::Impl {
   void update_mass_flux();
   Real face_velocity_change() const;
   void finish_step(Real dt, StepReport& report);
+  void update_scalars(Real dt, const ParticleExchange& exchange, StepReport& report);
   void add_to_balance(Real dt);
   void update_stocks();
   void copy_velocity_to_state();
@@ -46,6 +50,7 @@ struct GasSolver::Impl {
   PressureLinearSolver pressure_solver;
   GasState state;
   GasBalance balance;
+  std::array<std::optional<ScalarTransport>, scalar_count> scalars;
 
   HostArray<Real> influx, inertia, relaxation, cell_force, rhs, correction;
   FaceField before;  ///< face velocities at the start of an outer iteration

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "cfd/scalar_options.hpp"
 #include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
@@ -26,14 +27,16 @@ struct GasState {
       pressure_gradient;           ///< what particles in the cell feel; jumps at a bed's edge are not smeared
   FaceField volume_flux;           ///< of gas along +axis [m3/s]; satisfies continuity
   FaceField superficial_velocity;  ///< volume_flux per area, over the open part of the face [m/s]
+  std::array<HostArray<Real>, scalar_count> scalars{};  ///< [K], [kg/kg]; empty where not solved
 };
 
 /// What the particles do to the gas during the coming step, per gas cell.
 /// Force on the gas per volume of cell: -exchange_coefficient velocity + explicit_force.
 struct ParticleExchange {
-  HostArray<Real> void_fraction;         ///< at the end of the step
-  HostArray<Real> exchange_coefficient;  ///< beta [kg/m3/s], taken implicitly
-  HostArray<Vec3> explicit_force;        ///< [N/m3]
+  HostArray<Real> void_fraction;                     ///< at the end of the step
+  HostArray<Real> exchange_coefficient;              ///< beta [kg/m3/s], taken implicitly
+  HostArray<Vec3> explicit_force;                    ///< [N/m3]
+  std::array<ScalarSource, scalar_count> scalars{};  ///< heat and vapour; empty: none
 };
 
 /// Arrays for a grid: void fraction 1, no exchange. With these the solver is pure CFD.
