@@ -87,7 +87,7 @@ void GasSolver::Impl::initialise(const HostArray<Real>& void_fraction) {
   Kokkos::deep_copy(state.pressure_gradient, Vec3{});
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const Real* u = fields.velocity.data() + axis * n;
+    const Real* u = &fields.velocity(axis * n);
     for_faces("cfd::gas_solver::initial_faces", geometry.stencil, axis,
               [&](Index f, Index m, Index p, Index position, Index) {
                 const Real wm = geometry.axis[a].series_minus[static_cast<std::size_t>(position)];
