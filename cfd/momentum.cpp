@@ -60,7 +60,10 @@ void MomentumEquation::prepare(const GasFields& fields, Real dt) {
               [&](Index f, Index minus, Index plus, Index position, Index) {
                 const auto at = static_cast<std::size_t>(position);
                 const Real w = metrics.linear_minus[at];
-                conductance_[a](f) = options_.viscosity * geometry_.area[a](f) / metrics.distance[at];
+                // A cell that is its own neighbour, alone along a periodic axis, does not act on itself: in the face
+                // balance its term would not cancel.
+                conductance_[a](f) =
+                    minus == plus ? 0 : options_.viscosity * geometry_.area[a](f) / metrics.distance[at];
                 tangential_conductance_[a](f) = conductance_[a](f) * (w * eps[minus] + (1 - w) * eps[plus]);
               });
     copy_periodic_faces(geometry_.stencil, axis, conductance_[a]);

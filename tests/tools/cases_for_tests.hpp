@@ -79,6 +79,25 @@ gas:
     faces: {x: [0, 0.5, 1], y: [0, 0.1, 0.4, 1], z: [0, 1]}
 )";
 
+/// A plane flow: cells from sizes and zones.
+inline constexpr const char* refined_case =
+    R"(domain: {min: [0, 0, 0], max: ["100 mm", "5 mm", "200 mm"], periodic: [z]}
+time: {end: 0.01, gas_step: 0.001}
+gas:
+  density: 1.2
+  viscosity: 1.8e-5
+  grid:
+    cell_size: "6 mm"
+    max_growth: 1.2
+    zones:
+      - {box: {min: ["40 mm", 0, 0], max: ["60 mm", "5 mm", "50 mm"]}, cell_size: "2 mm"}
+      - {box: {min: ["48 mm", 0, 0], max: ["52 mm", "5 mm", "200 mm"]}, cell_size: "1 mm"}
+    single_cell: [y]
+  boundaries:
+    - {name: front, on: front, symmetry: {}}
+    - {name: back, on: back, symmetry: {}}
+)";
+
 /// Particles of every way to be spread in size.
 inline constexpr const char* powders_case = R"(domain: {min: [0, 0, 0], max: ["40 mm", "40 mm", "100 mm"]}
 time: {end: 0.1, particle_step: 1e-6, settle: {until: quiet, at_most: "0.5 s", speed: "2 mm/s"}}

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,7 +128,8 @@ TEST(CaseFile, DefaultsFollowFromOtherKeys) {
 }
 
 TEST(CaseFile, ResolvedFileGivesTheSameCase) {
-  for (const char* text : {spouted_bed_case, channel_case, powders_case, vessel_case, two_particles_case}) {
+  for (const char* text :
+       {spouted_bed_case, channel_case, refined_case, powders_case, vessel_case, two_particles_case}) {
     const CaseSpec spec = parse_case(text, "some_case.yaml");
     const std::string resolved = resolved_yaml(spec);
     const CaseSpec again = parse_case(resolved, "another_name.yaml");
@@ -173,6 +175,7 @@ TEST(CaseFile, TheTestsCoverEveryKey) {
   EXPECT_GT(paths.size(), 100u);
   std::map<std::string, std::string> given = parse_case(spouted_bed_case, "c.yaml").lines;
   given.merge(std::map(parse_case(channel_case, "c.yaml").lines));
+  given.merge(std::map(parse_case(refined_case, "c.yaml").lines));
   given.merge(std::map(parse_case(powders_case, "c.yaml").lines));
   given.merge(std::map(parse_case(vessel_case, "c.yaml").lines));
   const std::set<std::string> elsewhere{"coupling.transfer_grid.cells", "coupling.transfer_grid.growth",
@@ -418,6 +421,55 @@ TEST(CaseErrors, Grids) {
   EXPECT_EQ(
       bed_errors("domain.max=[0.04, 0.002, 0.1]").find("too narrow for these particles") != std::string::npos,
       true);
+}
+
+TEST(CaseErrors, RefinedGrids) {
+  EXPECT_EQ(errors(refined_case, {"gas.grid.cells=[1, 1, 1]"})
+                    .find("cells and cell_size are given; exactly one of "
+                          "cells, faces, cell_size") != std::string::npos,
+            true);
+  EXPECT_EQ(errors(refined_case, {"gas.grid.growth=[1, 1, 2]"}),
+            "--set: gas.grid.growth: cell_size says all about the cells; only with cells");
+  EXPECT_EQ(errors(channel_case, {"gas.grid.max_growth=1.2"}),
+            "--set: gas.grid.max_growth: there is no cell_size; only with cell_size");
+  EXPECT_EQ(errors(refined_case, {"gas.grid.max_growth=1"}),
+            "--set: gas.grid.max_growth: \"1\" is out of range; a number from 1.01 to 2");
+  EXPECT_EQ(errors(refined_case, {"gas.grid.zones.0.cell_size=0"}),
+            "--set: gas.grid.zones.0.cell_size: \"0\" is out of range; a length greater than 0");
+  EXPECT_EQ(errors(refined_case, {"gas.grid.cell_size=1e-7"}),
+            "--set: gas.grid.cell_size: with its zones it gives more than 100000 cells along an axis; larger "
+            "sizes");
+  EXPECT_EQ(
+      errors(refined_case, {"gas.grid.zones.1.box.min=[0.1, 0, 0]", "gas.grid.zones.1.box.max=[0.2, 1, 1]"})
+              .find("gas.grid.zones.1.box: it lies outside the domain along x; within 0 to 0.1 m") !=
+          std::string::npos,
+      true);
+}
+
+TEST(CaseFile, RefinedGrid) {
+  const CaseSpec spec = parse_case(refined_case, "c.yaml");
+  const CartesianGrid grid = make_grid(spec.gas->grid, spec.domain);
+  EXPECT_EQ(grid.cells().y, 1);
+  // 4 cells of 1 mm in the middle of x, from 48 to 52 mm; 2 mm at most from 40 to 60 mm.
+  EXPECT_NEAR(grid.width(0, grid.locate(0, 0.0501)), 0.001, 1e-12);
+  EXPECT_LE(grid.width(0, grid.locate(0, 0.0401)), 0.002);
+  // Along z the second zone takes the whole height.
+  EXPECT_EQ(grid.cells().z, 200);
+  const std::string text = describe_case_text(spec);
+  EXPECT_NE(text.find(fmt::format("gas grid         {} x 1 x 200 = {} cells", grid.cells().x,
+                                  200 * grid.cells().x)),
+            std::string::npos)
+      << text;
+  Real smallest = 1e-3, largest = 0;  // along z all cells have 1 mm
+  for (Index i = 0; i < grid.cells().x; ++i) {
+    smallest = std::min(smallest, grid.width(0, i));
+    largest = std::max(largest, grid.width(0, i));
+  }
+  const std::string shape = fmt::format(
+      "sides from {:.4g} to {:.4g} mm, largest aspect ratio {:.4g}, neighbours differ "
+      "by a factor of 1.",
+      1e3 * smallest, 1e3 * largest, std::max(1e3 * largest, 1e-3 / smallest));
+  EXPECT_NE(text.find(shape), std::string::npos) << text << shape;
 }
 
 TEST(CaseErrors, Outputs) {

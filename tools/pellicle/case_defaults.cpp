@@ -73,6 +73,19 @@ void count_fills(CaseSpec& spec, core::InputProblems& problems) {
   }
 }
 
+/// The gas grid's cells where sizes and zones say what they are; false if they are too many.
+bool make_refined(CaseSpec& spec, core::InputProblems& problems) {
+  if (!spec.gas->grid.refinement) return true;
+  try {
+    refine(spec.gas->grid, spec.domain);
+    return true;
+  } catch (const std::length_error&) {
+    problems.add(spec.where("gas.grid.cell_size"),
+                 "with its zones it gives more than 100000 cells along an axis; larger sizes");
+    return false;
+  }
+}
+
 }  // namespace
 
 void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
@@ -83,7 +96,11 @@ void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
     if (spec.contacts.linear->speed == 0) spec.contacts.linear->speed = spec.time.impact_speed;
   }
   count_fills(spec, problems);
-  if (spec.gas && spec.coupling.transfer_grid.cells.x == 0) spec.coupling.transfer_grid = spec.gas->grid;
+  if (spec.gas && !make_refined(spec, problems)) return;
+  if (spec.gas && spec.coupling.transfer_grid.cells.x == 0) {
+    spec.coupling.transfer_grid = spec.gas->grid;
+    spec.coupling.transfer_grid.refinement.reset();  // the cells that it came to are kept
+  }
   for (auto& population : spec.particles) {
     if (population.feed && population.feed->to == 0) population.feed->to = spec.time.end;
   }

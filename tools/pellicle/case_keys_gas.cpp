@@ -22,60 +22,6 @@ constexpr core::ModelInfo pressure_solver_list[] = {
     {"multigrid", "conjugate gradients with a geometric multigrid cycle"},
     {"amgcl", "conjugate gradients with the algebraic multigrid of AMGCL"}};
 
-constexpr core::WholeRule cells_rule{1, 100'000};
-
-void describe_faces(Keys& keys, std::array<std::vector<Real>, 3>& faces, const DomainSpec& domain) {
-  static constexpr std::string_view names[] = {"x", "y", "z"};
-  for (std::size_t a = 0; a < 3; ++a) {
-    keys.reals(
-        {names[a], "coordinates of the cell faces, from one side of the domain to the other", Need::required},
-        {dimension::length}, Size{2}, faces[a]);
-    const auto& f = faces[a];
-    if (!keys.reading() || f.size() < 2) continue;
-    const int axis = static_cast<int>(a);
-    if (std::adjacent_find(f.begin(), f.end(), [](Real p, Real q) { return !(p < q); }) != f.end()) {
-      keys.problem(names[a], "the coordinates do not increase; each larger than the one before");
-    }
-    const Real tolerance = 1e-9 * (domain.box.max[axis] - domain.box.min[axis]);
-    if (std::abs(f.front() - domain.box.min[axis]) > tolerance ||
-        std::abs(f.back() - domain.box.max[axis]) > tolerance) {
-      keys.problem(names[a], fmt::format("from {} to {} m it is not the domain; from {} to {} m", f.front(),
-                                         f.back(), domain.box.min[axis], domain.box.max[axis]));
-    }
-  }
-}
-
-/// `cells` or `faces`, with `growth` for stretched cells.
-void describe_grid(Keys& keys, GridSpec& grid, const DomainSpec& domain) {
-  const bool by_faces = !grid.faces[0].empty();
-  std::optional<std::vector<std::int64_t>> cells;
-  if (grid.cells.x > 0 && !by_faces)
-    cells = std::vector<std::int64_t>{grid.cells.x, grid.cells.y, grid.cells.z};
-  keys.wholes({"cells", "number of cells along x, y, z"}, cells_rule, Size::exactly(3), cells);
-  std::optional<std::vector<Real>> growth;
-  if (!by_faces) growth = std::vector<Real>{grid.growth.x, grid.growth.y, grid.growth.z};
-  keys.reals({"growth", "size of a cell over that of the one before it, along x, y, z; 1 is uniform"},
-             {dimension::pure_number, {.min = 0.5, .max = 2}}, Size::exactly(3), growth);
-  std::optional<std::array<std::vector<Real>, 3>> faces;
-  if (by_faces) faces = grid.faces;
-  keys.section<std::array<std::vector<Real>, 3>>(
-      {"faces", "coordinates of all cell faces, in place of cells"}, faces,
-      [&](Keys& inner, std::array<std::vector<Real>, 3>& f) { describe_faces(inner, f, domain); });
-  if (!keys.reading()) return;
-  if (cells) {
-    grid.cells = {static_cast<Index>((*cells)[0]), static_cast<Index>((*cells)[1]),
-                  static_cast<Index>((*cells)[2])};
-  }
-  if (growth) grid.growth = {(*growth)[0], (*growth)[1], (*growth)[2]};
-  if (faces) {
-    if (keys.given("growth")) keys.problem("growth", "faces say all about the cells; only with cells");
-    grid.faces = *faces;
-    for (int axis = 0; axis < 3; ++axis) {
-      grid.cells[axis] = static_cast<Index>((*faces)[static_cast<std::size_t>(axis)].size()) - 1;
-    }
-  }
-}
-
 /// The kinds of boundaries as keys of which one is given.
 struct BoundaryKinds {
   std::optional<cfd::Inlet> inlet;
@@ -179,10 +125,7 @@ void describe_gas(Keys& keys, CaseSpec& spec) {
         inner.vector({"body_force", "on the gas besides gravity"}, {dimension::force_per_volume},
                      gas.options.body_force);
         inner.section<GridSpec>({"grid", "cells of the domain", Need::required}, gas.grid,
-                                [&](Keys& k, GridSpec& grid) {
-                                  describe_grid(k, grid, spec.domain);
-                                  k.exactly_one({"cells", "faces"});
-                                });
+                                [&](Keys& k, GridSpec& grid) { describe_gas_grid(k, grid, spec.domain); });
         inner.choice({"convection", "how the convected velocity gets from cells to faces"},
                      cfd::convection_models, gas.options.convection);
         inner.list<cfd::BoundaryPatch>(
@@ -207,24 +150,7 @@ void describe_coupling(Keys& keys, CaseSpec& spec) {
         inner.section<GridSpec>(
             {"transfer_grid", "cells in which the void fraction is counted", Need::has_default,
              "the gas grid"},
-            grid, [&](Keys& k, GridSpec& transfer) {
-              describe_grid(k, transfer, spec.domain);
-              std::optional<Real> cell_size;
-              k.real({"cell_size", "of about cubic cells, in place of cells"},
-                     {dimension::length, range::positive}, cell_size);
-              k.exactly_one({"cells", "faces", "cell_size"});
-              if (!cell_size) return;
-              for (int axis = 0; axis < 3; ++axis) {
-                const Real cells =
-                    std::round((spec.domain.box.max[axis] - spec.domain.box.min[axis]) / *cell_size);
-                if (cells > static_cast<Real>(cells_rule.max)) {
-                  k.problem("cell_size", fmt::format("it gives {} cells along {}; at most {}", cells,
-                                                     "xyz"[axis], cells_rule.max));
-                  return;
-                }
-                transfer.cells[axis] = std::max(Index{1}, static_cast<Index>(cells));
-              }
-            });
+            grid, [&](Keys& k, GridSpec& transfer) { describe_transfer_grid(k, transfer, spec.domain); });
         if (inner.reading() && grid) options.transfer_grid = *grid;
         inner.choice({"exchange", "how the gas gets the momentum that particles lose"},
                      coupling::exchange_models, options.exchange);

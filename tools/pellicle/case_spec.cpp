@@ -1,5 +1,7 @@
 #include "tools/pellicle/case_spec.hpp"
 
+#include "core/graded_axis.hpp"
+
 namespace pellicle::tools {
 
 std::string CaseSpec::where(const std::string& path) const {
@@ -32,6 +34,26 @@ std::optional<dem::SizeDistribution> SizesSpec::distribution() const {
   if (rosin_rammler) return *rosin_rammler;
   if (table) return *table;
   return std::nullopt;
+}
+
+void refine(GridSpec& grid, const DomainSpec& domain) {
+  const RefinementSpec& refinement = *grid.refinement;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    const Real low = domain.box.min[axis];
+    const Real high = domain.box.max[axis];
+    if (refinement.single_cell[a]) {
+      grid.faces[a] = {low, high};
+    } else {
+      std::vector<SizeZone> zones;
+      zones.reserve(refinement.zones.size());
+      for (const GridZoneSpec& zone : refinement.zones)
+        zones.push_back({zone.box.min[axis], zone.box.max[axis], zone.cell_size});
+      grid.faces[a] = make_graded_faces(low, high, refinement.cell_size, refinement.max_growth, zones,
+                                        domain.periodic[a]);
+    }
+    grid.cells[axis] = static_cast<Index>(grid.faces[a].size()) - 1;
+  }
 }
 
 CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {

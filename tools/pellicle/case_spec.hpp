@@ -203,12 +203,27 @@ struct WallSpec {
   std::optional<Vec3> torque_about;  ///< [m]
 };
 
+/// A box in which cells are smaller.
+struct GridZoneSpec {
+  Box box;             ///< [m]
+  Real cell_size = 0;  ///< [m]
+};
+
+/// Cells of a size, and of smaller ones in zones; see make_graded_faces.
+struct RefinementSpec {
+  Real cell_size = 0;  ///< largest [m]
+  Real max_growth = 1.15;
+  std::vector<GridZoneSpec> zones;
+  std::array<bool, 3> single_cell{false, false, false};  ///< axes along which the domain is one cell
+};
+
 /// A grid over the whole domain; see make_grid.
 struct GridSpec {
   Index3 cells{0, 0, 0};
   Vec3 growth{1, 1, 1};  ///< per axis, size of a cell over that of the one before it, from min to max
   /// Face coordinates per axis, cells + 1 each [m]; empty along axes where cells and growth say it all.
   std::array<std::vector<Real>, 3> faces;
+  std::optional<RefinementSpec> refinement;  ///< what cells and faces follow from, if they do
 };
 
 struct GasSpec {
@@ -307,6 +322,10 @@ struct CaseSpec {
   /// was not given.
   std::string where(const std::string& path) const;
 };
+
+/// Gives a grid with a refinement the cells and faces that follow from it; throws std::length_error if they are more than
+/// 100,000 along an axis.
+void refine(GridSpec& grid, const DomainSpec& domain);
 
 /// The grid that a specification describes, over the domain and periodic where the domain is.
 CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain);

@@ -119,6 +119,35 @@ std::string cells_text(const CartesianGrid& grid) {
                      grid.cells().z, grid.cell_count(), range(0), range(1), range(2));
 }
 
+/// How far cells are from cubes and from their neighbours; an axis of one cell does not count.
+std::string shape_text(const CartesianGrid& grid) {
+  Real smallest = 1e300, largest = 0, aspect = 1, growth = 1;
+  Vec3 least = {1e300, 1e300, 1e300}, most{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Index n = grid.cells()[axis];
+    if (n == 1) continue;
+    for (Index i = 0; i < n; ++i) {
+      const Real width = grid.width(axis, i);
+      least[axis] = std::min(least[axis], width);
+      most[axis] = std::max(most[axis], width);
+      if (i + 1 == n && !grid.periodic(axis)) continue;
+      const Real next = grid.width(axis, (i + 1) % n);
+      growth = std::max({growth, width / next, next / width});
+    }
+    smallest = std::min(smallest, least[axis]);
+    largest = std::max(largest, most[axis]);
+  }
+  if (largest == 0) return "one cell";
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      if (a != b) aspect = std::max(aspect, most[a] / least[b]);
+    }
+  }
+  return fmt::format(
+      "sides from {} to {} mm, largest aspect ratio {:.4g}, neighbours differ by a factor of {:.4g}",
+      millimetres(smallest), millimetres(largest), aspect, growth);
+}
+
 }  // namespace
 
 std::string describe_case_text(const CaseSpec& spec) {
@@ -132,6 +161,7 @@ std::string describe_case_text(const CaseSpec& spec) {
   if (spec.gas) {
     const CartesianGrid grid = make_grid(spec.gas->grid, spec.domain);
     facts.add("gas grid", "{}", cells_text(grid));
+    facts.add("gas cells", "{}", shape_text(grid));
     add_inlets(facts, spec, grid);
     facts.add("convection", "{}",
               cfd::convection_models[static_cast<std::size_t>(spec.gas->options.convection)].name);
