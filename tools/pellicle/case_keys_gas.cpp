@@ -13,7 +13,6 @@ namespace {
 
 using core::Keys;
 using core::Need;
-using core::Size;
 using core::TextRule;
 namespace dimension = core::dimension;
 namespace range = core::range;

@@ -99,8 +99,8 @@ void describe_refinement(Keys& keys, GridSpec& grid, const DomainSpec& domain) {
   }
   keys.real({"cell_size", "largest size of cells, in place of cells"}, {dimension::length, range::positive},
             cell_size);
-  keys.real({"max_growth", "with cell_size: largest ratio of the sizes of neighbouring cells", Need::has_default,
-             fmt::format("{}", RefinementSpec{}.max_growth)},
+  keys.real({"max_growth", "with cell_size: largest ratio of the sizes of neighbouring cells",
+             Need::has_default, fmt::format("{}", RefinementSpec{}.max_growth)},
             {dimension::pure_number, {.min = 1.01, .max = 2}}, max_growth);
   keys.list<GridZoneSpec>({"zones", "with cell_size: boxes in which cells are smaller"}, Size{1}, held.zones,
                           [&](Keys& inner, GridZoneSpec& zone) { describe_zone(inner, zone, domain); });
@@ -134,16 +134,15 @@ void describe_gas_grid(Keys& keys, GridSpec& grid, const DomainSpec& domain) {
 void describe_transfer_grid(Keys& keys, GridSpec& transfer, const DomainSpec& domain) {
   describe_grid(keys, transfer, domain);
   std::optional<Real> cell_size;
-  keys.real({"cell_size", "of about cubic cells, in place of cells"},
-         {dimension::length, range::positive}, cell_size);
+  keys.real({"cell_size", "of about cubic cells, in place of cells"}, {dimension::length, range::positive},
+            cell_size);
   keys.exactly_one({"cells", "faces", "cell_size"});
   if (!cell_size) return;
   for (int axis = 0; axis < 3; ++axis) {
-    const Real cells =
-        std::round((domain.box.max[axis] - domain.box.min[axis]) / *cell_size);
+    const Real cells = std::round((domain.box.max[axis] - domain.box.min[axis]) / *cell_size);
     if (cells > static_cast<Real>(cells_rule.max)) {
-      keys.problem("cell_size", fmt::format("it gives {} cells along {}; at most {}", cells,
-                                         "xyz"[axis], cells_rule.max));
+      keys.problem("cell_size",
+                   fmt::format("it gives {} cells along {}; at most {}", cells, "xyz"[axis], cells_rule.max));
       return;
     }
     transfer.cells[axis] = std::max(Index{1}, static_cast<Index>(cells));
