@@ -61,8 +61,9 @@ class Piece {
   std::vector<Real> cells(Real left, Real right) const {
     const Index n = count(left, right);
     std::vector<Real> sizes(static_cast<std::size_t>(n));
-    Real lowest = std::max(std::isfinite(left) ? left : -unbounded, std::isfinite(right) ? right : -unbounded) -
-                  0.5 * growth_;
+    Real lowest =
+        std::max(std::isfinite(left) ? left : -unbounded, std::isfinite(right) ? right : -unbounded) -
+        0.5 * growth_;
     if (!std::isfinite(lowest)) lowest = std::log(length_ / n) - 1;
     Real limit = largest_;
     Real share = 0;
@@ -161,7 +162,8 @@ void make_fit(const Piece& piece, Real& left, Real& right) {
 
 std::vector<Real> make_graded_faces(Real min, Real max, Real size, Real growth,
                                     const std::vector<SizeZone>& zones, bool periodic, Index most) {
-  if (!(max > min) || !(size > 0)) throw std::invalid_argument("cells need a length and a size greater than 0");
+  if (!(max > min) || !(size > 0))
+    throw std::invalid_argument("cells need a length and a size greater than 0");
   if (!(growth > 1)) throw std::invalid_argument("the growth of cells is not greater than 1");
   for (const SizeZone& zone : zones) {
     if (!(zone.size > 0)) throw std::invalid_argument("the size of cells in a zone is not greater than 0");
@@ -196,7 +198,8 @@ std::vector<Real> make_graded_faces(Real min, Real max, Real size, Real growth,
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     for (const Real cell : pieces[k].cells(at_cut[k], at_cut[k + 1])) faces.push_back(faces.back() + cell);
     faces.back() = cuts[k + 1];
-    if (faces.size() > static_cast<std::size_t>(most) + 1) throw std::length_error("too many cells along an axis");
+    if (faces.size() > static_cast<std::size_t>(most) + 1)
+      throw std::length_error("too many cells along an axis");
   }
   return faces;
 }

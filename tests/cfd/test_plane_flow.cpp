@@ -50,7 +50,8 @@ PlaneResult run(const Across& across) {
       {"jet", static_cast<Side>(2 * along), lower, Inlet{2, {}}, "case.yaml:1"},
       {"out", static_cast<Side>(2 * along + 1), {}, Outlet{0}, "case.yaml:2"}};
   for (int s = 0; s < 2 && !across.periodic; ++s) {
-    patches.push_back({s == 0 ? "near" : "far", static_cast<Side>(2 * across.axis + s), {}, across.sides, "case.yaml:3"});
+    patches.push_back(
+        {s == 0 ? "near" : "far", static_cast<Side>(2 * across.axis + s), {}, across.sides, "case.yaml:3"});
   }
   GasSolver solver(grid, options, patches);
   advance(solver, make_empty_exchange(grid), 2e-3, 20);

@@ -19,8 +19,7 @@ std::vector<Real> widths(const std::vector<Real>& faces) {
 
 Real largest_ratio(const std::vector<Real>& w, bool periodic) {
   Real ratio = 1;
-  for (std::size_t i = 0; i + 1 < w.size(); ++i)
-    ratio = std::max({ratio, w[i] / w[i + 1], w[i + 1] / w[i]});
+  for (std::size_t i = 0; i + 1 < w.size(); ++i) ratio = std::max({ratio, w[i] / w[i + 1], w[i + 1] / w[i]});
   if (periodic) ratio = std::max({ratio, w.front() / w.back(), w.back() / w.front()});
   return ratio;
 }
@@ -31,7 +30,8 @@ bool has_face(const std::vector<Real>& faces, Real at) {
 
 /// Cells of a continuous grid, the integral of 1 / h: h grows with distance from zones with slope
 /// 2 (growth - 1) / (growth + 1), as geometric cells do.
-Real ideal_count(Real min, Real max, Real size, Real growth, const std::vector<SizeZone>& zones, bool periodic) {
+Real ideal_count(Real min, Real max, Real size, Real growth, const std::vector<SizeZone>& zones,
+                 bool periodic) {
   const int samples = 200'000;
   const Real slope = 2 * (growth - 1) / (growth + 1);
   Real count = 0;
@@ -50,7 +50,8 @@ Real ideal_count(Real min, Real max, Real size, Real growth, const std::vector<S
   return count;
 }
 
-void expect_good(Real min, Real max, Real size, Real growth, const std::vector<SizeZone>& zones, bool periodic) {
+void expect_good(Real min, Real max, Real size, Real growth, const std::vector<SizeZone>& zones,
+                 bool periodic) {
   const std::vector<Real> faces = make_graded_faces(min, max, size, growth, zones, periodic);
   const std::vector<Real> w = widths(faces);
   EXPECT_EQ(faces.front(), min);
@@ -111,8 +112,8 @@ TEST(GradedAxis, FewCellsMoreThanAContinuousGrid) {
                                 {0.01, 1.1, {{0.24, 0.25, 0.001}}, true}};
   for (const Case& c : cases) {
     expect_good(0, 0.25, c.size, c.growth, c.zones, c.periodic);
-    const auto count = static_cast<Real>(
-        make_graded_faces(0, 0.25, c.size, c.growth, c.zones, c.periodic).size() - 1);
+    const auto count =
+        static_cast<Real>(make_graded_faces(0, 0.25, c.size, c.growth, c.zones, c.periodic).size() - 1);
     const Real ideal = ideal_count(0, 0.25, c.size, c.growth, c.zones, c.periodic);
     EXPECT_GE(count, ideal - 1);
     // Whole numbers of cells between cuts, of which a zone has two, and half a step of growth lost at each.
