@@ -27,6 +27,7 @@ std::string_view name_of(Side side);
 struct Inlet {
   std::optional<Real> velocity;   ///< superficial, inward [m/s]; exactly one of the two is set
   std::optional<Real> flow_rate;  ///< spread uniformly over the inlet's area [m3/s]
+  Real share{1};                  ///< of the flow rate that comes through this inlet
 };
 /// Gas leaves at a given pressure. Gas that comes back in has that pressure as its stagnation pressure.
 struct Outlet {
@@ -41,15 +42,23 @@ struct FreeSlip {};
 /// A plane of symmetry; acts on the gas as a wall without shear does.
 struct Symmetry {};
 
+/// A disc, or an annulus, on a side of the domain.
+struct DiscRegion {
+  Vec3 centre;            ///< its part along the side counts [m]
+  Real radius = 0;        ///< [m]
+  Real inner_radius = 0;  ///< [m]
+};
+
 struct BoundaryPatch {
   std::string name;
   Side on = Side::z_min;
   std::optional<Box>
-      region;  ///< the part of the side inside this box; unset: what no region of that side takes
+      region;  ///< the part of the side inside this box; neither this nor disc: what no region of that side takes
   std::variant<Inlet, Outlet, NoSlip, FreeSlip, Symmetry> kind;
   std::string where;  ///< `file:line: key`, opens messages about this patch
   std::array<ScalarBoundary, scalar_count>
-      scalars{};  ///< what scalars meet here; of use where they are solved
+      scalars{};                     ///< what scalars meet here; of use where they are solved
+  std::optional<DiscRegion> disc{};  ///< the part of the side inside this disc, in place of a box
 };
 
 }  // namespace pellicle::cfd

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "cfd/plane_region.hpp"
 #include "core/error.hpp"
 
 namespace pellicle::cfd {
@@ -16,16 +17,6 @@ std::string_view name_of(Side side) {
 }
 
 namespace {
-
-struct Rectangle {
-  std::array<Real, 2> min, max;
-  Real area() const { return std::max(max[0] - min[0], 0.0) * std::max(max[1] - min[1], 0.0); }
-};
-
-Rectangle intersect(const Rectangle& a, const Rectangle& b) {
-  return {{std::max(a.min[0], b.min[0]), std::max(a.min[1], b.min[1])},
-          {std::min(a.max[0], b.max[0]), std::min(a.max[1], b.max[1])}};
-}
 
 // The two axes that span a side, the faster-running first.
 std::array<int, 2> plane_axes(int axis) {
@@ -85,24 +76,47 @@ class SideCutter {
           return grid.faces(across_[static_cast<std::size_t>(d)])[static_cast<std::size_t>(i)];
         };
         const Rectangle face{{corner(0, a), corner(1, b)}, {corner(0, a + 1), corner(1, b + 1)}};
-        Real left = face.area();
-        for (const auto& [patch, region] : regions_) {
-          const Real area = intersect(face, region).area();
-          if (area <= 1e-12 * face.area()) continue;
-          add(result, at, patch, area);
-          covered[static_cast<std::size_t>(patch)] += area;
-          left -= area;
-        }
-        if (left > 1e-12 * face.area()) {
-          add(result, at, rest_, left);
-          if (rest_ >= 0) covered[static_cast<std::size_t>(rest_)] += left;
-        }
+        cut_face(result, at, face, covered);
       }
     }
     check_covered(covered);
   }
 
+  // Area of each patch's region on this side, walls or not [m2].
+  void add_region_areas(std::vector<Real>& areas) const {
+    for (const auto& [patch, region] : regions_)
+      areas[static_cast<std::size_t>(patch)] = region.area_within(whole_);
+  }
+
  private:
+  // Of a face that surfaces within the domain close in part, the regions take what they cover of the open part.
+  void cut_face(Boundaries& result, const Index3& at, const Rectangle& face,
+                std::vector<Real>& covered) const {
+    const Stencil& s = geometry_.stencil;
+    const Index f = s.face(axis_, at.x, at.y, at.z) + (is_max(side_) ? s.face_step(axis_) : 0);
+    const Real open = geometry_.area[static_cast<std::size_t>(axis_)](f);
+    if (open == 0) return;
+    const Real whole = face.area();
+    std::vector<std::pair<int, Real>> shares;
+    Real taken = 0;
+    for (const auto& [patch, region] : regions_) {
+      const Real area = region.area_within(face);
+      if (area <= 1e-12 * whole) continue;
+      shares.emplace_back(patch, area);
+      taken += area;
+    }
+    const Real scale = taken > open ? open / taken : 1;
+    for (const auto& [patch, area] : shares) {
+      add(result, at, patch, scale * area);
+      covered[static_cast<std::size_t>(patch)] += scale * area;
+    }
+    const Real left = open - scale * taken;
+    if (left > 1e-12 * whole) {
+      add(result, at, rest_, left);
+      if (rest_ >= 0) covered[static_cast<std::size_t>(rest_)] += left;
+    }
+  }
+
   void collect_regions() {
     const Box& box = geometry_.grid.box();
     const Real plane = is_max(side_) ? box.max[axis_] : box.min[axis_];
@@ -110,7 +124,7 @@ class SideCutter {
     for (std::size_t p = 0; p < patches_.size(); ++p) {
       const BoundaryPatch& patch = patches_[p];
       if (patch.on != side_) continue;
-      if (!patch.region) {
+      if (!patch.region && !patch.disc) {
         if (rest_ >= 0) {
           refuse(patch,
                  fmt::format("takes the rest of the {} side, as '{}' does; allowed: one boundary a side "
@@ -120,24 +134,38 @@ class SideCutter {
         rest_ = static_cast<int>(p);
         continue;
       }
-      Rectangle region{{patch.region->min[across_[0]], patch.region->min[across_[1]]},
-                       {patch.region->max[across_[0]], patch.region->max[across_[1]]}};
-      region = intersect(region, whole_);
-      const bool reaches =
-          patch.region->min[axis_] <= plane + slack && patch.region->max[axis_] >= plane - slack;
-      if (!reaches || region.area() <= 0) {
+      const PlaneRegion region = patch.disc ? make_round(patch) : PlaneRegion(make_rectangle(patch));
+      const bool reaches = patch.disc || (patch.region->min[axis_] <= plane + slack &&
+                                          patch.region->max[axis_] >= plane - slack);
+      if (!reaches || region.area_within(whole_) <= 0) {
         refuse(patch,
-               fmt::format("has a region that covers no face of the {} side; allowed: a box that reaches it",
-                           name_of(side_)));
+               fmt::format("has a region that covers no face of the {} side; allowed: a {} that reaches it",
+                           name_of(side_), patch.disc ? "disc" : "box"));
       }
       regions_.emplace_back(static_cast<int>(p), region);
     }
   }
 
+  Rectangle make_rectangle(const BoundaryPatch& patch) const {
+    const Rectangle region{{patch.region->min[across_[0]], patch.region->min[across_[1]]},
+                           {patch.region->max[across_[0]], patch.region->max[across_[1]]}};
+    return region.intersect(whole_);
+  }
+
+  PlaneRegion make_round(const BoundaryPatch& patch) const {
+    const DiscRegion& disc = *patch.disc;
+    if (!(disc.radius > disc.inner_radius && disc.inner_radius >= 0 && std::isfinite(disc.radius))) {
+      refuse(patch,
+             fmt::format("has a disc of radius {} and inner radius {} m; allowed: 0 <= inner_radius < radius",
+                         disc.radius, disc.inner_radius));
+    }
+    return {{disc.centre[across_[0]], disc.centre[across_[1]]}, disc.radius, disc.inner_radius};
+  }
+
   void check_overlaps() const {
     for (std::size_t a = 0; a < regions_.size(); ++a) {
       for (std::size_t b = a + 1; b < regions_.size(); ++b) {
-        if (intersect(regions_[a].second, regions_[b].second).area() <= 1e-9 * whole_.area()) continue;
+        if (regions_[a].second.area_within(regions_[b].second) <= 1e-9 * whole_.area()) continue;
         refuse(patches_[static_cast<std::size_t>(regions_[b].first)],
                fmt::format("overlaps boundary '{}' on the {} side; allowed: regions apart from each other",
                            patches_[static_cast<std::size_t>(regions_[a].first)].name, name_of(side_)));
@@ -148,9 +176,14 @@ class SideCutter {
   void check_covered(const std::vector<Real>& covered) const {
     for (std::size_t p = 0; p < patches_.size(); ++p) {
       if (patches_[p].on == side_ && covered[p] <= 0) {
-        refuse(patches_[p],
-               fmt::format("covers no face of the {} side; allowed: a part that no other boundary takes",
-                           name_of(side_)));
+        refuse(
+            patches_[p],
+            geometry_.is_cut
+                ? fmt::format("is outside of the gas: walls keep it from every face that it covers of the {} "
+                              "side; allowed: a part of the side that the gas reaches",
+                              name_of(side_))
+                : fmt::format("covers no face of the {} side; allowed: a part that no other boundary takes",
+                              name_of(side_)));
       }
     }
   }
@@ -185,15 +218,26 @@ class SideCutter {
   int axis_;
   std::array<int, 2> across_;
   Rectangle whole_{};
-  std::vector<std::pair<int, Rectangle>> regions_;
+  std::vector<std::pair<int, PlaneRegion>> regions_;
   int rest_ = -1;
 };
 
-// A flow rate becomes a velocity over the area that the inlet was found to have.
-void set_inlet_velocities(Boundaries& result, const std::vector<BoundaryPatch>& patches) {
+// A flow rate becomes a velocity over the area that the inlet was found to have. Where walls cut cells that area differs a
+// little from the region's own: the flow of a given velocity is that through the region.
+void set_inlet_velocities(Boundaries& result, const std::vector<BoundaryPatch>& patches, bool is_cut,
+                          const std::vector<Real>& region_areas) {
   std::vector<Real> area(patches.size(), 0);
   for (const BoundaryPiece& piece : result.pieces) {
     if (piece.patch >= 0) area[static_cast<std::size_t>(piece.patch)] += piece.area;
+  }
+  constexpr Real mostly = 0.9;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (!is_cut || !std::holds_alternative<Inlet>(patches[p].kind) || area[p] >= mostly * region_areas[p])
+      continue;
+    refuse(patches[p],
+           fmt::format("is an inlet of {:.4g} m2 of which walls leave {:.4g} m2 open; allowed: an inlet "
+                       "within the gas",
+                       region_areas[p], area[p]));
   }
   Real net_inflow = 0;
   Real gross = 0;
@@ -203,7 +247,8 @@ void set_inlet_velocities(Boundaries& result, const std::vector<BoundaryPatch>& 
     if (piece.kind != PieceKind::inlet) continue;
     const auto p = static_cast<std::size_t>(piece.patch);
     const auto& inlet = std::get<Inlet>(patches[p].kind);
-    const Real inward = inlet.velocity ? *inlet.velocity : *inlet.flow_rate / area[p];
+    Real inward = inlet.velocity ? *inlet.velocity : inlet.share * *inlet.flow_rate / area[p];
+    if (inlet.velocity && is_cut && region_areas[p] > 0) inward *= region_areas[p] / area[p];
     piece.velocity[piece.axis] = -piece.outward * inward;
     net_inflow += inward * piece.area;
     gross += std::abs(inward) * piece.area;
@@ -253,11 +298,14 @@ Boundaries cut_boundaries(const FlowGeometry& geometry, const std::vector<Bounda
     }
     result.patch_names.push_back(patch.name);
   }
+  std::vector<Real> region_areas(patches.size(), 0);
   for (const Side side : {Side::x_min, Side::x_max, Side::y_min, Side::y_max, Side::z_min, Side::z_max}) {
     if (geometry.stencil.periodic[static_cast<std::size_t>(axis_of(side))]) continue;
-    SideCutter(geometry, patches, side).cut(result);
+    const SideCutter cutter(geometry, patches, side);
+    cutter.cut(result);
+    cutter.add_region_areas(region_areas);
   }
-  set_inlet_velocities(result, patches);
+  set_inlet_velocities(result, patches, geometry.is_cut, region_areas);
   set_boundary_values(result, geometry);
   return result;
 }

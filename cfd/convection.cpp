@@ -21,7 +21,6 @@ void compute(const char* label, int axis, const FlowGeometry& geometry, const Bo
              const GasFields& fields, const ConvectionCorrection& result) {
   const Stencil& s = geometry.stencil;
   const auto ua = static_cast<std::size_t>(axis);
-  const AxisMetrics& metrics = geometry.axis[ua];
   const Index faces = s.faces(axis);
   const Index cells = fields.cells;
   const Real* u = fields.velocity.data();
@@ -36,9 +35,9 @@ void compute(const char* label, int axis, const FlowGeometry& geometry, const Bo
       normal_value[f] = eps[central] * u[central + axis * cells];
       return;
     }
-    const FaceNeighbours near = find_neighbours(s, metrics, axis, forward, minus, plus, position);
+    const FaceNeighbours near = find_neighbours(geometry, axis, forward, f, minus, plus, position);
     const BoundaryValue* boundary = nullptr;
-    if (near.beyond)
+    if (near.beyond && !near.blocked)
       boundary = &boundaries.values[2 * ua + (forward ? 0 : 1)][static_cast<std::size_t>(place)];
     for (int a = 0; a < 3; ++a) {
       const Index shift = a * cells;
@@ -47,6 +46,7 @@ void compute(const char* label, int axis, const FlowGeometry& geometry, const Bo
       const Real central = value(near.central);
       const Real face =
           face_value<scheme>(central, value(near.downstream), near.linear_central, *near.quick, [&] {
+            if (near.blocked) return Upstream{central, true};
             return boundary ? Upstream{2 * (boundary->fixed[a] + boundary->free[a] * central) - central, true}
                             : Upstream{value(near.upstream), false};
           });

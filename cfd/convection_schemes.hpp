@@ -54,14 +54,17 @@ inline Real face_value(Real central, Real downstream, Real linear_central, const
 struct FaceNeighbours {
   Index central, downstream;
   Index upstream;  ///< of no meaning if beyond
-  bool beyond;     ///< the upstream cell would lie beyond a boundary
+  bool beyond;     ///< the upstream cell would lie beyond a boundary of the domain or a surface within it
+  bool blocked;    ///< beyond a surface within it
   Real linear_central;
   const std::array<Real, 3>* quick;
 };
 
-/// For a face between cells minus and plus, at a position along the axis, with the flow along +axis or against it.
-inline FaceNeighbours find_neighbours(const Stencil& s, const AxisMetrics& metrics, int axis, bool forward,
+/// For face f between cells minus and plus, at a position along the axis, with the flow along +axis or against it.
+inline FaceNeighbours find_neighbours(const FlowGeometry& geometry, int axis, bool forward, Index f,
                                       Index minus, Index plus, Index position) {
+  const Stencil& s = geometry.stencil;
+  const AxisMetrics& metrics = geometry.axis[static_cast<std::size_t>(axis)];
   const auto at = static_cast<std::size_t>(position);
   const Index n = s.n[axis];
   FaceNeighbours result{};
@@ -74,6 +77,12 @@ inline FaceNeighbours find_neighbours(const Stencil& s, const AxisMetrics& metri
   result.beyond = !periodic && (upstream_position < 0 || upstream_position >= n);
   if (periodic) upstream_position = (upstream_position + 2 * n) % n;
   result.upstream = plus + (upstream_position - position) * s.stride(axis);
+  if (geometry.is_cut && !result.beyond) {
+    Index upstream_face = forward ? position - 1 : position + 1;
+    if (periodic) upstream_face = (upstream_face + n) % n;
+    result.blocked = geometry.closed(axis, f + (upstream_face - position) * s.face_step(axis));
+    result.beyond = result.blocked;
+  }
   return result;
 }
 

@@ -97,9 +97,19 @@ void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, c
     copy_periodic_faces(geometry_.stencil, axis, mobility_[a]);
     copy_periodic_faces(geometry_.stencil, axis, matrix.coefficient[a]);
   }
+  clear_closed_faces(fields.superficial);
+  clear_closed_faces(mobility_);
+  clear_closed_faces(matrix.coefficient);
   predict_outlets(fields, momentum, influx, relaxation, dt, matrix);
   set_boundary_velocities(geometry_, boundaries_, fields);
   matrix.finish();
+}
+
+// Loops over all faces compute faces that a surface closes like all others; what they found there is no flow.
+void FaceBalance::clear_closed_faces(const FaceField& field) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const Index f : geometry_.closed_faces[a]) field[a](f) = 0;
+  }
 }
 
 // Static pressure just inside the outlet. Gas that comes back in starts from rest at the outlet's pressure.
@@ -244,6 +254,8 @@ void FaceBalance::compute_cell_force(const GasFields& fields, const MomentumEqua
     copy_periodic_faces(s, axis, jump_[a]);
     copy_periodic_faces(s, axis, inertial_[a]);
   }
+  clear_closed_faces(jump_);
+  clear_closed_faces(inertial_);
   set_boundary_inertia(fields);
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
@@ -263,15 +275,55 @@ void FaceBalance::compute_cell_force(const GasFields& fields, const MomentumEqua
       }
     });
   }
+  block_cell_force(fields, force);
+}
+
+// Beside a face that a surface closes a cell has the inertial force of its other face, as beside a wall of the domain.
+void FaceBalance::block_cell_force(const GasFields& fields, const HostArray<Real>& force) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Index step = geometry_.stencil.face_step(axis);
+    for (const BlockedCell& blocked : geometry_.blocked[a]) {
+      const Index c = blocked.cell;
+      Real inertial = 0;
+      Real velocity = 0;
+      if (blocked.minus_open || blocked.plus_open) {
+        const Index open = blocked.face + (blocked.plus_open ? step : 0);
+        inertial = 2 * inertial_[a](open);
+        velocity = fields.superficial[a](open);
+      }
+      force(c + axis * fields.cells) =
+          0.5 * geometry_.volume(c) *
+          (inertial + fields.exchange_coefficient(c) / fields.void_fraction(c) * velocity);
+    }
+  }
 }
 
 // Gradient in the half of a cell that ends at a face: inertia, drag and force of the gas there hold it up.
+Real FaceBalance::gradient_from(const GasFields& fields, Index c, int axis, Real inertial,
+                                Real velocity) const {
+  const Real eps = fields.void_fraction(c);
+  return options_.body_force[axis] + (fields.force(c + axis * fields.cells) - inertial -
+                                      fields.exchange_coefficient(c) / eps * velocity) /
+                                         eps;
+}
+
 Real FaceBalance::side_gradient(const GasFields& fields, Index c, int axis, Index f) const {
   const auto a = static_cast<std::size_t>(axis);
-  const Real eps = fields.void_fraction(c);
-  return options_.body_force[axis] + (fields.force(c + axis * fields.cells) - inertial_[a](f) -
-                                      fields.exchange_coefficient(c) / eps * fields.superficial[a](f)) /
-                                         eps;
+  return gradient_from(fields, c, axis, inertial_[a](f), fields.superficial[a](f));
+}
+
+// Of both halves of a cell beside a closed face.
+std::array<Real, 2> FaceBalance::side_gradients(const GasFields& fields, const BlockedCell& blocked,
+                                                int axis) const {
+  const auto a = static_cast<std::size_t>(axis);
+  const Index step = geometry_.stencil.face_step(axis);
+  const bool any = blocked.minus_open || blocked.plus_open;
+  const Real inertial = any ? inertial_[a](blocked.face + (blocked.plus_open ? step : 0)) : 0;
+  const auto side = [&](bool open, Index face) {
+    return gradient_from(fields, blocked.cell, axis, inertial, open ? fields.superficial[a](face) : 0);
+  };
+  return {side(blocked.minus_open, blocked.face), side(blocked.plus_open, blocked.face + step)};
 }
 
 void FaceBalance::compute_pressure_gradient(const GasFields& fields, const HostArray<Vec3>& gradient) const {
@@ -300,6 +352,41 @@ void FaceBalance::compute_pressure_gradient(const GasFields& fields, const HostA
       });
     }
   });
+  // The same with both sides' gradients as they are beside closed faces, whose jump is 0.
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Index step = s.face_step(axis);
+    for (const BlockedCell& blocked : geometry_.blocked[a]) {
+      const auto [minus, plus] = side_gradients(fields, blocked, axis);
+      Real& held = gradient(blocked.cell)[axis];
+      held += 0.5 * (minus - side_gradient(fields, blocked.cell, axis, blocked.face));
+      held += 0.5 * (plus - side_gradient(fields, blocked.cell, axis, blocked.face + step));
+    }
+  }
+}
+
+// -V grad p of the cell and the pressures on its faces belong together as in a whole cell, where the areas are the same
+// on both sides and nothing is left.
+Vec3 FaceBalance::surface_pressure_force(const GasFields& fields, Index c) const {
+  const Stencil& s = geometry_.stencil;
+  const Index3 at = geometry_.grid.coordinates(c);
+  Vec3 force{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Index minus = s.face(axis, at.x, at.y, at.z);
+    const Index plus = minus + s.face_step(axis);
+    const Real half = 0.5 * geometry_.grid.width(axis, at[axis]);
+    std::array<Real, 2> side{side_gradient(fields, c, axis, minus), side_gradient(fields, c, axis, plus)};
+    const auto& cells = geometry_.blocked[a];
+    const auto found = std::lower_bound(cells.begin(), cells.end(), c,
+                                        [](const BlockedCell& b, Index cell) { return b.cell < cell; });
+    if (found != cells.end() && found->cell == c) side = side_gradients(fields, *found, axis);
+    const Real p = fields.pressure(c);
+    force[axis] = geometry_.area[a](plus) * (p + half * side[1]) -
+                  geometry_.area[a](minus) * (p - half * side[0]) -
+                  0.5 * geometry_.volume(c) * (side[0] + side[1]);
+  }
+  return force;
 }
 
 Real FaceBalance::boundary_pressure(const GasFields& fields, std::size_t b) const {

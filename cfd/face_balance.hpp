@@ -4,6 +4,7 @@
 // velocity (Cubero & Fueyo, Numer. Heat Transfer B 52 (2007) 507).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "cfd/boundary_pieces.hpp"
@@ -40,14 +41,21 @@ class FaceBalance {
   void compute_pressure_gradient(const GasFields& fields, const HostArray<Vec3>& gradient) const;
   /// Pressure at a boundary piece: what the cell's half up to the boundary leaves; after compute_cell_force.
   Real boundary_pressure(const GasFields& fields, std::size_t piece) const;
+  /// Force of the pressure on the gas of a cell by the surfaces in it [N]: what its faces leave of the cell's pressure
+  /// force; after compute_cell_force.
+  Vec3 surface_pressure_force(const GasFields& fields, Index cell) const;
 
  private:
+  void clear_closed_faces(const FaceField& field) const;
+  void block_cell_force(const GasFields& fields, const HostArray<Real>& force) const;
   Real pressure_jump(const GasFields& fields, const MomentumEquation& momentum, int axis, Index face) const;
   void predict_outlets(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
                        const HostArray<Real>& relaxation, Real dt, PressureMatrix& matrix);
   void set_boundary_inertia(const GasFields& fields);
   Real outlet_pressure(const GasFields& fields, std::size_t piece) const;
   Real side_gradient(const GasFields& fields, Index cell, int axis, Index face) const;
+  Real gradient_from(const GasFields& fields, Index cell, int axis, Real inertial, Real velocity) const;
+  std::array<Real, 2> side_gradients(const GasFields& fields, const BlockedCell& blocked, int axis) const;
 
   const FlowGeometry& geometry_;
   const Boundaries& boundaries_;

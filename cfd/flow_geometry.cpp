@@ -1,6 +1,8 @@
 #include "cfd/flow_geometry.hpp"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 namespace pellicle::cfd {
 
@@ -80,6 +82,76 @@ FlowGeometry::FlowGeometry(const CartesianGrid& g) : grid(g) {
           const Real wz = a == 2 ? 1 : grid.width(2, k);
           area[static_cast<std::size_t>(a)](stencil.face(a, i, j, k)) = wx * wy * wz;
         }
+      }
+    }
+  }
+  distance = make_face_field(stencil, "cfd::flow_geometry::distance");
+  for (int a = 0; a < 3; ++a) {
+    const auto ua = static_cast<std::size_t>(a);
+    for_faces("cfd::flow_geometry::distance", stencil, a, [&](Index f, Index, Index, Index position, Index) {
+      distance[ua](f) = axis[ua].distance[static_cast<std::size_t>(position)];
+    });
+    copy_periodic_faces(stencil, a, distance[ua]);
+  }
+  open_cells = stencil.cells();
+}
+
+FlowGeometry::FlowGeometry(const CartesianGrid& g, const ImmersedGeometry& immersed) : FlowGeometry(g) {
+  if (!immersed.surfaces.empty()) cut(immersed);
+}
+
+void FlowGeometry::cut(const ImmersedGeometry& immersed) {
+  CutCells cells = cut_cells(grid, immersed.surfaces, immersed.inside);
+  surfaces = immersed.surfaces;
+  pieces = std::move(cells.pieces);
+  open_cells = cells.open_cells;
+  part_cells = static_cast<Index>(cells.parts.size());
+  thin_faces = cells.closed_faces;
+  is_cut = open_cells < stencil.cells() || part_cells > 0 || thin_faces > 0;
+  for (Index c = 0; c < stencil.cells(); ++c) {
+    if (cells.open[static_cast<std::size_t>(c)] == 0) volume(c) = 0;
+  }
+  // How far the gas of a cell is from the cell's centre.
+  std::vector<Vec3> shift(cells.open.size());
+  for (const PartCell& part : cells.parts) {
+    const Index3 at = grid.coordinates(part.cell);
+    volume(part.cell) *= part.open_share;
+    smallest_part = std::min(smallest_part, part.open_share);
+    shift[static_cast<std::size_t>(part.cell)] =
+        part.centroid - Vec3{grid.center(0, at.x), grid.center(1, at.y), grid.center(2, at.z)};
+  }
+  for (int a = 0; a < 3; ++a) {
+    const auto ua = static_cast<std::size_t>(a);
+    for (std::size_t f = 0; f < area[ua].extent(0); ++f) area[ua](f) *= cells.open_share[ua][f];
+    for_faces("cfd::flow_geometry::centroids", stencil, a,
+              [&](Index f, Index m, Index p, Index position, Index) {
+                const Real centres = axis[ua].distance[static_cast<std::size_t>(position)];
+                const Real between =
+                    centres + shift[static_cast<std::size_t>(p)][a] - shift[static_cast<std::size_t>(m)][a];
+                distance[ua](f) = std::max(between, 0.1 * centres);
+              });
+    copy_periodic_faces(stencil, a, distance[ua]);
+  }
+  find_closed_faces();
+}
+
+void FlowGeometry::find_closed_faces() {
+  for (int a = 0; a < 3; ++a) {
+    const auto ua = static_cast<std::size_t>(a);
+    const Index n = stencil.n[a];
+    const bool periodic = stencil.periodic[ua];
+    for (Index c = 0; c < stencil.cells(); ++c) {
+      const Index3 at = grid.coordinates(c);
+      const Index minus = stencil.face(a, at.x, at.y, at.z);
+      const Index plus = minus + stencil.face_step(a);
+      const bool minus_inside = periodic || at[a] > 0;
+      const bool plus_inside = periodic || at[a] < n - 1;
+      const bool minus_closed = minus_inside && area[ua](minus) == 0;
+      const bool plus_closed = plus_inside && area[ua](plus) == 0;
+      if (minus_closed) closed_faces[ua].push_back(minus);
+      if (periodic && at[a] == n - 1 && plus_closed) closed_faces[ua].push_back(plus);
+      if (volume(c) > 0 && (minus_closed || plus_closed)) {
+        blocked[ua].push_back({c, minus, !minus_closed, !plus_closed});
       }
     }
   }

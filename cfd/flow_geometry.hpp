@@ -1,11 +1,13 @@
-// Where the gas can be: open volume of cells, open area of faces, distances. The place where immersed boundaries
-// come in: they reduce volumes and areas, nothing else here changes.
+// Where the gas can be: open volume of cells, open area of faces, distances, and the surfaces within the domain, which
+// reduce volumes and areas.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "cfd/cut_cells.hpp"
 #include "cfd/gas_state.hpp"
+#include "cfd/immersed_surface.hpp"
 #include "cfd/stencil.hpp"
 #include "core/cartesian_grid.hpp"
 
@@ -24,14 +26,48 @@ struct AxisMetrics {
   std::vector<std::array<Real, 3>> quick_forward, quick_backward;
 };
 
+/// A cell one of whose faces across an axis, or both, nothing passes: of the two, what is open.
+struct BlockedCell {
+  Index cell = 0;
+  Index face = 0;  ///< the face on its minus side
+  bool minus_open = false;
+  bool plus_open = false;
+};
+
+/// The surfaces within the domain and the point from which the gas spreads.
+struct ImmersedGeometry {
+  std::vector<ImmersedSurface> surfaces;
+  Vec3 inside;  ///< a point in the gas [m]
+};
+
 struct FlowGeometry {
   explicit FlowGeometry(const CartesianGrid& grid);
+  /// Cut by surfaces; throws std::invalid_argument as cut_cells does.
+  FlowGeometry(const CartesianGrid& grid, const ImmersedGeometry& immersed);
+
+  /// Whether a face towards the cell beyond it, across an axis, lets nothing through.
+  bool closed(int a, Index face) const { return is_cut && area[static_cast<std::size_t>(a)](face) == 0; }
 
   CartesianGrid grid;
   Stencil stencil;
   std::array<AxisMetrics, 3> axis;
-  HostArray<Real> volume;  ///< open volume of a cell [m3]
+  HostArray<Real> volume;  ///< open volume of a cell [m3]; 0 where no gas is
   FaceField area;          ///< open area of a face [m2]
+  FaceField distance;      ///< along the axis, between the centroids of the gas on both sides of a face [m]
+
+  bool is_cut = false;                              ///< surfaces leave less than the whole domain
+  std::array<std::vector<Index>, 3> closed_faces;   ///< faces between two cells that let nothing through
+  std::array<std::vector<BlockedCell>, 3> blocked;  ///< open cells beside them
+  std::vector<ImmersedSurface> surfaces;
+  std::vector<SurfacePiece> pieces;  ///< of the surfaces, in the order of cells
+  Index open_cells = 0;
+  Index part_cells = 0;    ///< open cells of which the gas has only a part
+  Real smallest_part = 1;  ///< smallest open share of a cell's volume
+  Index thin_faces = 0;    ///< faces that a surface closes which has gas on both sides
+
+ private:
+  void cut(const ImmersedGeometry& immersed);
+  void find_closed_faces();
 };
 
 /// A face field of zeros.

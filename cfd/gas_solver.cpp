@@ -40,8 +40,8 @@ ParticleExchange make_empty_exchange(const CartesianGrid& grid) {
 }
 
 GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
-                      std::vector<BoundaryPatch> boundary_patches)
-    : geometry(grid),
+                      std::vector<BoundaryPatch> boundary_patches, const ImmersedGeometry& immersed)
+    : geometry(grid, immersed),
       options(gas_options),
       patches(std::move(boundary_patches)),
       boundaries(cut_boundaries(geometry, patches)),
@@ -79,9 +79,15 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
   }
 }
 
-void GasSolver::Impl::initialise(const HostArray<Real>& void_fraction) {
+void GasSolver::Impl::initialise(const HostArray<Real>& given_void_fraction) {
   const Index n = fields.cells;
-  Kokkos::deep_copy(fields.void_fraction, void_fraction);
+  const HostArray<Real>& void_fraction = fields.void_fraction;
+  Kokkos::deep_copy(void_fraction, given_void_fraction);
+  for (Index c = 0; c < n; ++c) {
+    if (geometry.volume(c) > 0) continue;
+    void_fraction(c) = 1;
+    for (int a = 0; a < 3; ++a) fields.velocity(c + a * n) = 0;
+  }
   Kokkos::deep_copy(fields.void_fraction_old, void_fraction);
   Kokkos::deep_copy(fields.pressure, 0.0);
   Kokkos::deep_copy(state.pressure_gradient, Vec3{});
@@ -96,6 +102,7 @@ void GasSolver::Impl::initialise(const HostArray<Real>& void_fraction) {
                 fields.superficial[a](f) = eps * (wl * u[m] + (1 - wl) * u[p]);
               });
     copy_periodic_faces(geometry.stencil, axis, fields.superficial[a]);
+    for (const Index f : geometry.closed_faces[a]) fields.superficial[a](f) = 0;
   }
   for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries.pieces[b];
@@ -138,6 +145,7 @@ void GasSolver::Impl::take_exchange(const ParticleExchange& exchange, Real dt) {
     if (!(eps > 0 && eps <= 1 + 1e-9)) fail(fmt::format("the void fraction is {}", eps), c);
     if (!(beta >= 0 && std::isfinite(beta)))
       fail(fmt::format("the momentum exchange coefficient is {}", beta), c);
+    if (!(geometry.volume(c) > 0)) continue;
     fields.void_fraction(c) = eps;
     fields.exchange_coefficient(c) = beta;
     const Vec3 force = exchange.explicit_force(c);
@@ -151,8 +159,11 @@ void GasSolver::Impl::assemble_momentum(Real dt) {
   const Index n = fields.cells;
   const Real keep = (1 - options.solver.velocity_relaxation) / options.solver.velocity_relaxation;
   for_entries("cfd::gas_solver::inertia", n, [&](Index c) {
-    const Real own_inertia = geometry.volume(c) * (options.density * fields.void_fraction_old(c) / dt +
-                                                   fields.exchange_coefficient(c));
+    // A cell without gas takes part with a velocity of 0: any diagonal will do.
+    const Real own_inertia = geometry.volume(c) > 0
+                                 ? geometry.volume(c) * (options.density * fields.void_fraction_old(c) / dt +
+                                                         fields.exchange_coefficient(c))
+                                 : 1;
     for (Index e = c; e < 3 * n; e += n) {
       relaxation(e) = keep * (momentum.own()(e) + own_inertia);
       inertia(e) = own_inertia + relaxation(e);
@@ -362,6 +373,14 @@ void GasSolver::Impl::add_to_balance(Real dt) {
     const Real out = options.density * fields.piece_flow[b] * dt;
     (out > 0 ? patch.mass_out : patch.mass_in) += std::abs(out);
   }
+  Index done = -1;
+  for (std::size_t b = 0; b < geometry.pieces.size(); ++b) {
+    sheared += dt * momentum.surface_shear(fields, b);
+    // Pieces come in the order of their cells.
+    const Index c = geometry.pieces[b].cell;
+    if (c != done) pressed += dt * faces.surface_pressure_force(fields, c);
+    done = c;
+  }
   const auto total = [&](const char* label, auto&& term) {
     Vec3 result;
     for (int a = 0; a < 3; ++a) {
@@ -388,8 +407,9 @@ void GasSolver::Impl::add_to_balance(Real dt) {
   balance.particle_pressure += particle_pressure;
 }
 
-GasSolver::GasSolver(const CartesianGrid& grid, const GasOptions& options, std::vector<BoundaryPatch> patches)
-    : impl_(std::make_unique<Impl>(grid, options, std::move(patches))) {
+GasSolver::GasSolver(const CartesianGrid& grid, const GasOptions& options, std::vector<BoundaryPatch> patches,
+                     const ImmersedGeometry& immersed)
+    : impl_(std::make_unique<Impl>(grid, options, std::move(patches), immersed)) {
   initialise();
 }
 GasSolver::~GasSolver() = default;
@@ -452,7 +472,29 @@ StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
 }
 
 const CartesianGrid& GasSolver::grid() const { return impl_->geometry.grid; }
+const FlowGeometry& GasSolver::geometry() const { return impl_->geometry; }
 const GasOptions& GasSolver::options() const { return impl_->options; }
+
+Vec3 GasSolver::surface_force(std::size_t surface) const {
+  const Impl& s = *impl_;
+  const auto& pieces = s.geometry.pieces;
+  Vec3 total{};
+  for (std::size_t first = 0; first < pieces.size();) {
+    // The pressure on the surfaces of a cell is shared by their areas.
+    std::size_t end = first;
+    Real own = 0;
+    Real all = 0;
+    for (; end < pieces.size() && pieces[end].cell == pieces[first].cell; ++end) {
+      all += pieces[end].area;
+      if (static_cast<std::size_t>(pieces[end].surface) != surface) continue;
+      own += pieces[end].area;
+      total -= s.momentum.surface_shear(s.fields, end);
+    }
+    if (own > 0) total -= (own / all) * s.faces.surface_pressure_force(s.fields, pieces[first].cell);
+    first = end;
+  }
+  return total;
+}
 const GasState& GasSolver::state() const { return impl_->state; }
 const GasBalance& GasSolver::balance() const { return impl_->balance; }
 const ScalarBalance* GasSolver::balance(Scalar scalar) const {

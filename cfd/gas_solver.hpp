@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cfd/boundary.hpp"
+#include "cfd/flow_geometry.hpp"
 #include "cfd/gas_balance.hpp"
 #include "cfd/gas_options.hpp"
 #include "cfd/gas_state.hpp"
@@ -44,7 +45,9 @@ class GasSolver {
  public:
   /// A side without a patch is a no-slip wall at rest. Throws InputError for patches that overlap, cover no face,
   /// lie on a periodic side, or let gas in with no way out.
-  GasSolver(const CartesianGrid& grid, const GasOptions& options, std::vector<BoundaryPatch> patches);
+  /// `immersed`: surfaces within the domain; throws std::invalid_argument as cut_cells does.
+  GasSolver(const CartesianGrid& grid, const GasOptions& options, std::vector<BoundaryPatch> patches,
+            const ImmersedGeometry& immersed = {});
   ~GasSolver();
   GasSolver(GasSolver&&) noexcept;
   GasSolver& operator=(GasSolver&&) noexcept;
@@ -61,6 +64,9 @@ class GasSolver {
   StepReport update(Real dt, const ParticleExchange& exchange);
 
   const CartesianGrid& grid() const;
+  const FlowGeometry& geometry() const;
+  /// Force of the gas on a surface within the domain [N], by its number: pressure and viscous stress of the last step.
+  Vec3 surface_force(std::size_t surface) const;
   const GasOptions& options() const;
   const GasState& state() const;
   const GasBalance& balance() const;

@@ -19,7 +19,8 @@
 namespace pellicle::cfd {
 
 struct GasSolver::Impl {
-  Impl(const CartesianGrid& grid, const GasOptions& gas_options, std::vector<BoundaryPatch> boundary_patches);
+  Impl(const CartesianGrid& grid, const GasOptions& gas_options, std::vector<BoundaryPatch> boundary_patches,
+       const ImmersedGeometry& immersed);
 
   void initialise(const HostArray<Real>& void_fraction);
   void take_exchange(const ParticleExchange& exchange, Real dt);

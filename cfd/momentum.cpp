@@ -40,6 +40,10 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
       tangential_conductance_(make_face_field(geometry.stencil, "cfd::momentum::tangential_conductance")),
       linear_solver_(3 * geometry.stencil.cells()) {
   wall_stress_.assign(boundaries.pieces.size(), 0);
+  for (const SurfacePiece& piece : geometry.pieces) {
+    const ImmersedSurface& surface = geometry.surfaces[static_cast<std::size_t>(piece.surface)];
+    surface_velocity_.push_back(surface.velocity_at(piece.point, piece.normal));
+  }
   const Index n = geometry.stencil.cells();
   for (std::size_t d = 0; d < 6; ++d) {
     near_[d] = make_array("cfd::momentum::near" + std::to_string(d), n);
@@ -63,7 +67,7 @@ void MomentumEquation::prepare(const GasFields& fields, Real dt) {
                 // A cell that is its own neighbour, alone along a periodic axis, does not act on itself: in the face
                 // balance its term would not cancel.
                 conductance_[a](f) =
-                    minus == plus ? 0 : options_.viscosity * geometry_.area[a](f) / metrics.distance[at];
+                    minus == plus ? 0 : options_.viscosity * geometry_.area[a](f) / geometry_.distance[a](f);
                 tangential_conductance_[a](f) = conductance_[a](f) * (w * eps[minus] + (1 - w) * eps[plus]);
               });
     copy_periodic_faces(geometry_.stencil, axis, conductance_[a]);
@@ -198,6 +202,34 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
     own_(piece.cell + piece.axis * n) += terms.mirror;
     normal_[beyond](piece.cell) -= terms.mirror;
   }
+  add_surfaces(fields);
+}
+
+// The gas sticks to a surface. All of the slip counts, not its tangential part alone: the normal part vanishes with the
+// square of the distance, as continuity wants it to, and the components stay apart from each other.
+Real MomentumEquation::surface_conductance(const GasFields& fields, const SurfacePiece& piece) const {
+  const bool sticks = geometry_.surfaces[static_cast<std::size_t>(piece.surface)].sticks;
+  return sticks ? options_.viscosity * fields.void_fraction(piece.cell) * piece.area / piece.distance : 0;
+}
+
+void MomentumEquation::add_surfaces(const GasFields& fields) {
+  for (std::size_t b = 0; b < geometry_.pieces.size(); ++b) {
+    const SurfacePiece& piece = geometry_.pieces[b];
+    const Real shear = surface_conductance(fields, piece);
+    for (int a = 0; a < 3; ++a) {
+      const Index e = piece.cell + a * fields.cells;
+      own_(e) += shear;
+      source_(e) += shear * surface_velocity_[b][a];
+    }
+  }
+}
+
+Vec3 MomentumEquation::surface_shear(const GasFields& fields, std::size_t b) const {
+  const SurfacePiece& piece = geometry_.pieces[b];
+  const Index n = fields.cells;
+  const Vec3 gas{fields.velocity(piece.cell), fields.velocity(piece.cell + n),
+                 fields.velocity(piece.cell + 2 * n)};
+  return surface_conductance(fields, piece) * (surface_velocity_[b] - gas);
 }
 
 Vec3 MomentumEquation::convected_inflow(const GasFields& fields, std::size_t b) const {

@@ -37,8 +37,12 @@ class MomentumEquation {
   /// Momentum that a boundary piece carries into the gas per second, by convection and by viscous stress [N].
   Vec3 convected_inflow(const GasFields& fields, std::size_t piece) const;
   Vec3 shear_force(const GasFields& fields, std::size_t piece) const;
+  /// Viscous force of a piece of the geometry's surfaces on the gas [N].
+  Vec3 surface_shear(const GasFields& fields, std::size_t piece) const;
 
  private:
+  Real surface_conductance(const GasFields& fields, const SurfacePiece& piece) const;
+  void add_surfaces(const GasFields& fields);
   void add_boundaries(const GasFields& fields);
   template <class Result>
   void apply(const char* label, const Real* u, Result&& result) const;
@@ -47,9 +51,10 @@ class MomentumEquation {
   const Boundaries& boundaries_;
   const GasOptions& options_;
   ConvectionCorrection correction_;
-  FaceField conductance_;             ///< mu area / distance [kg/s]; 0 on boundary faces
-  FaceField tangential_conductance_;  ///< the same times the face's void fraction
-  std::vector<Real> wall_stress_;     ///< of each boundary piece: normal force on the gas along +axis [N]
+  FaceField conductance_;               ///< mu area / distance [kg/s]; 0 on boundary faces
+  FaceField tangential_conductance_;    ///< the same times the face's void fraction
+  std::vector<Vec3> surface_velocity_;  ///< of each piece of the geometry's surfaces [m/s]
+  std::vector<Real> wall_stress_;       ///< of each boundary piece: normal force on the gas along +axis [N]
   std::array<HostArray<Real>, 6> near_,
       normal_;  ///< x-, x+, y-, y+, z-, z+; for components across, along that axis
   HostArray<Real> own_, source_, inverse_;

@@ -100,10 +100,18 @@ PressureLinearSolver::PressureLinearSolver(const FlowGeometry& geometry, Pressur
       p_(make_array("cfd::pressure_system::direction", geometry.stencil.cells())),
       q_(make_array("cfd::pressure_system::image", geometry.stencil.cells())) {}
 
-void PressureLinearSolver::remove_mean(const HostArray<Real>& v) {
+// Over the cells that take part: one that nothing can enter has no row.
+void PressureLinearSolver::remove_mean(const PressureMatrix& matrix, const HostArray<Real>& v) {
   const auto n = static_cast<Index>(v.extent(0));
-  const Real mean = sum_("cfd::pressure_system::mean", n, [&](Index c) { return v(c); }) / n;
-  for_entries("cfd::pressure_system::remove_mean", n, [&](Index c) { v(c) -= mean; });
+  const auto takes_part = [&](Index c) { return matrix.diagonal(c) > 0; };
+  const Real count =
+      sum_("cfd::pressure_system::count", n, [&](Index c) { return takes_part(c) ? 1.0 : 0.0; });
+  if (!(count > 0)) return;
+  const Real mean =
+      sum_("cfd::pressure_system::mean", n, [&](Index c) { return takes_part(c) ? v(c) : 0.0; }) / count;
+  for_entries("cfd::pressure_system::remove_mean", n, [&](Index c) {
+    if (takes_part(c)) v(c) -= mean;
+  });
 }
 
 LinearReport PressureLinearSolver::solve(const PressureMatrix& matrix, const HostArray<Real>& b,
@@ -119,7 +127,7 @@ LinearReport PressureLinearSolver::solve(const PressureMatrix& matrix, const Hos
     xs[c] = 0;
     r[c] = bs[c];
   });
-  if (matrix.singular) remove_mean(r_);
+  if (matrix.singular) remove_mean(matrix, r_);
   const auto magnitude = [&](Index c) { return std::abs(r[c]); };
   LinearReport report;
   report.residual = sum_("cfd::pressure_system::magnitude", n, magnitude);
@@ -132,7 +140,7 @@ LinearReport PressureLinearSolver::solve(const PressureMatrix& matrix, const Hos
   report.converged = false;
   while (report.iterations < max_iterations) {
     preconditioner_->apply(r_, z_);
-    if (matrix.singular) remove_mean(z_);
+    if (matrix.singular) remove_mean(matrix, z_);
     const Real rho_new = sum_("cfd::pressure_system::dot_rz", n, [&](Index c) { return r[c] * z[c]; });
     const Real beta = report.iterations == 0 ? 0 : rho_new / rho;
     rho = rho_new;

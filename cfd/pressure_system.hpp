@@ -59,7 +59,7 @@ class PressureLinearSolver {
   void drop() { preconditioner_->drop(); }
 
  private:
-  void remove_mean(const HostArray<Real>& v);
+  void remove_mean(const PressureMatrix& matrix, const HostArray<Real>& v);
 
   std::unique_ptr<PressurePreconditioner> preconditioner_;
   HostArray<Real> r_, z_, p_, q_;

@@ -108,7 +108,7 @@ void ScalarTransport::prepare(const GasFields& fields) {
       const auto at = static_cast<std::size_t>(position);
       const Real wm = metrics.series_minus[at];
       const Real eps_f = 1 / (wm / eps[m] + (1 - wm) / eps[p]);
-      conductance_[a](f) = options_.conductivity * eps_f * geometry_.area[a](f) / metrics.distance[at];
+      conductance_[a](f) = options_.conductivity * eps_f * geometry_.area[a](f) / geometry_.distance[a](f);
     });
     copy_periodic_faces(geometry_.stencil, axis, conductance_[a]);
   }
@@ -159,7 +159,9 @@ void ScalarTransport::assemble(const GasFields& fields, Real dt, const ScalarSou
   const bool sources = source.rate.extent(0) > 0;
   const Real* volume = geometry_.volume.data();
   for_entries("cfd::scalar_transport::storage", s.cells(), [&](Index c) {
-    const Real inertia = options_.capacity * density_ * fields.void_fraction_old(c) * volume[c] / dt;
+    // A cell without gas keeps its value.
+    const Real inertia =
+        volume[c] > 0 ? options_.capacity * density_ * fields.void_fraction_old(c) * volume[c] / dt : 1;
     const Real taken = sources ? volume[c] * source.coefficient(c) : 0;
     storage_(c) = inertia + taken;
     base_(c) = inertia * old_(c);
@@ -203,10 +205,11 @@ void ScalarTransport::compute_correction(const GasFields& fields) {
     for_faces(labels[a], s, axis, [&](Index f, Index minus, Index plus, Index position, Index place) {
       const Real flux = options_.capacity * fields.mass_flux[a](f);
       const bool forward = flux >= 0;
-      const FaceNeighbours near = find_neighbours(s, geometry_.axis[a], axis, forward, minus, plus, position);
+      const FaceNeighbours near = find_neighbours(geometry_, axis, forward, f, minus, plus, position);
       const Real central = v[near.central];
       const Real face =
           face_value<scheme>(central, v[near.downstream], near.linear_central, *near.quick, [&] {
+            if (near.blocked) return Upstream{central, true};
             if (!near.beyond) return Upstream{v[near.upstream], false};
             const FaceOfBoundary& edge =
                 boundary_values_[2 * a + (forward ? 0 : 1)][static_cast<std::size_t>(place)];
