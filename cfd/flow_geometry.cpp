@@ -123,13 +123,20 @@ void FlowGeometry::cut(const ImmersedGeometry& immersed) {
   for (int a = 0; a < 3; ++a) {
     const auto ua = static_cast<std::size_t>(a);
     for (std::size_t f = 0; f < area[ua].extent(0); ++f) area[ua](f) *= cells.open_share[ua][f];
+    std::vector<SkewFace> skew(area[ua].extent(0));
     for_faces("cfd::flow_geometry::centroids", stencil, a,
               [&](Index f, Index m, Index p, Index position, Index) {
                 const Real centres = axis[ua].distance[static_cast<std::size_t>(position)];
                 const Real between =
                     centres + shift[static_cast<std::size_t>(p)][a] - shift[static_cast<std::size_t>(m)][a];
                 distance[ua](f) = std::max(between, 0.1 * centres);
+                Vec3 across = shift[static_cast<std::size_t>(p)] - shift[static_cast<std::size_t>(m)];
+                across[a] = 0;
+                if (area[ua](f) > 0) skew[static_cast<std::size_t>(f)] = {f, m, p, across};
               });
+    for (const SkewFace& face : skew) {
+      if (norm(face.across) > 0) skew_faces[ua].push_back(face);
+    }
     copy_periodic_faces(stencil, a, distance[ua]);
   }
   find_closed_faces();

@@ -34,6 +34,14 @@ struct BlockedCell {
   bool plus_open = false;
 };
 
+/// A face of which the gas on one side or both is not in the middle of its cell: the line between the centroids does not
+/// run along the axis.
+struct SkewFace {
+  Index face = 0;
+  Index minus = 0, plus = 0;  ///< cells
+  Vec3 across;  ///< part of the way from the minus to the plus centroid that is not along the axis [m]
+};
+
 /// The surfaces within the domain and the point from which the gas spreads.
 struct ImmersedGeometry {
   std::vector<ImmersedSurface> surfaces;
@@ -58,6 +66,7 @@ struct FlowGeometry {
   bool is_cut = false;                              ///< surfaces leave less than the whole domain
   std::array<std::vector<Index>, 3> closed_faces;   ///< faces between two cells that let nothing through
   std::array<std::vector<BlockedCell>, 3> blocked;  ///< open cells beside them
+  std::array<std::vector<SkewFace>, 3> skew_faces;  ///< open ones
   std::vector<ImmersedSurface> surfaces;
   std::vector<SurfacePiece> pieces;  ///< of the surfaces, in the order of cells
   Index open_cells = 0;

@@ -40,8 +40,14 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
       tangential_conductance_(make_face_field(geometry.stencil, "cfd::momentum::tangential_conductance")),
       linear_solver_(3 * geometry.stencil.cells()) {
   wall_stress_.assign(boundaries.pieces.size(), 0);
+  piece_of_.assign(geometry.is_cut ? static_cast<std::size_t>(geometry.stencil.cells()) : 0, -1);
   for (const SurfacePiece& piece : geometry.pieces) {
     const ImmersedSurface& surface = geometry.surfaces[static_cast<std::size_t>(piece.surface)];
+    auto& largest = piece_of_[static_cast<std::size_t>(piece.cell)];
+    if (surface.sticks &&
+        (largest < 0 || piece.area > geometry.pieces[static_cast<std::size_t>(largest)].area)) {
+      largest = static_cast<std::int32_t>(surface_velocity_.size());
+    }
     surface_velocity_.push_back(surface.velocity_at(piece.point, piece.normal));
   }
   const Index n = geometry.stencil.cells();
@@ -203,6 +209,7 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
     normal_[beyond](piece.cell) -= terms.mirror;
   }
   add_surfaces(fields);
+  add_skew_stress(fields);
 }
 
 // The gas sticks to a surface. All of the slip counts, not its tangential part alone: the normal part vanishes with the
@@ -220,6 +227,32 @@ void MomentumEquation::add_surfaces(const GasFields& fields) {
       const Index e = piece.cell + a * fields.cells;
       own_(e) += shear;
       source_(e) += shear * surface_velocity_[b][a];
+    }
+  }
+}
+
+// Between centroids that do not face each other the difference of velocities is in part that across the line between
+// them: beside a wall, of the gradient that the wall makes. That part is no stress on the face.
+void MomentumEquation::add_skew_stress(const GasFields& fields) {
+  const Index n = fields.cells;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const SkewFace& skew : geometry_.skew_faces[axis]) {
+      for (int a = 0; a < 3; ++a) {
+        Real difference = 0;
+        int sides = 0;
+        for (const Index c : {skew.minus, skew.plus}) {
+          const std::int32_t b = piece_of_[static_cast<std::size_t>(c)];
+          if (b < 0) continue;
+          const SurfacePiece& piece = geometry_.pieces[static_cast<std::size_t>(b)];
+          const Real slip = fields.velocity(c + a * n) - surface_velocity_[static_cast<std::size_t>(b)][a];
+          difference += slip / piece.distance * dot(piece.normal, skew.across);
+          ++sides;
+        }
+        if (sides == 0) continue;
+        const Real force = tangential_conductance_[axis](skew.face) * difference / sides;
+        source_(skew.minus + a * n) -= force;
+        source_(skew.plus + a * n) += force;
+      }
     }
   }
 }

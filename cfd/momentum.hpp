@@ -43,6 +43,7 @@ class MomentumEquation {
  private:
   Real surface_conductance(const GasFields& fields, const SurfacePiece& piece) const;
   void add_surfaces(const GasFields& fields);
+  void add_skew_stress(const GasFields& fields);
   void add_boundaries(const GasFields& fields);
   template <class Result>
   void apply(const char* label, const Real* u, Result&& result) const;
@@ -53,6 +54,7 @@ class MomentumEquation {
   ConvectionCorrection correction_;
   FaceField conductance_;               ///< mu area / distance [kg/s]; 0 on boundary faces
   FaceField tangential_conductance_;    ///< the same times the face's void fraction
+  std::vector<std::int32_t> piece_of_;  ///< of each cell, its largest piece of a surface; -1: none
   std::vector<Vec3> surface_velocity_;  ///< of each piece of the geometry's surfaces [m/s]
   std::vector<Real> wall_stress_;       ///< of each boundary piece: normal force on the gas along +axis [N]
   std::array<HostArray<Real>, 6> near_,

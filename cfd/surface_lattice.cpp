@@ -9,16 +9,19 @@ namespace {
 
 // Surfaces often lie exactly on grid planes. Looking for crossings a trifle beside the points decides on which side
 // such a point is, the same for all its edges. The trifle leads inwards at both sides of the domain, so that a vessel
-// as large as the domain does not close the inlets in its bottom and the outlet in its top.
+// as large as the domain does not close the inlets in its bottom and the outlet in its top; at periodic sides, which are
+// one, it is the same. It differs from axis to axis, lest it run along a tilted surface.
 constexpr Real trifle = 1e-7;
+constexpr std::array<Real, 3> of_axis{1, 0.7321, 0.5477};
 
-std::vector<Real> probe_beside(const std::vector<Real>& at) {
+std::vector<Real> probe_beside(const std::vector<Real>& at, int axis, bool periodic) {
   Real smallest = at.back() - at.front();
   for (std::size_t i = 1; i < at.size(); ++i) smallest = std::min(smallest, at[i] - at[i - 1]);
+  const Real step = trifle * of_axis[static_cast<std::size_t>(axis)] * smallest;
   std::vector<Real> probed(at.size());
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Real share = (at[i] - at.front()) / (at.back() - at.front());
-    probed[i] = at[i] + trifle * smallest * (1.3719 - 2 * share);
+    probed[i] = at[i] + step * (periodic ? 0.3719 : 1.3719 - 2 * share);
   }
   return probed;
 }
@@ -46,7 +49,7 @@ SurfaceLattice::SurfaceLattice(const CartesianGrid& grid, const std::vector<Imme
       at_[a].push_back(grid.center(axis, i));
     }
     at_[a].push_back(grid.faces(axis).back());
-    probed_[a] = probe_beside(at_[a]);
+    probed_[a] = probe_beside(at_[a], axis, periodic_[a]);
     size_[a] = at_[a].size();
     points *= size_[a];
   }

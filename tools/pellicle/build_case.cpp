@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/model_variant.hpp"
-#include "tools/pellicle/build_walls.hpp"
+#include "tools/pellicle/build_gas.hpp"
 #include "tools/pellicle/case_checks.hpp"
 
 namespace pellicle::tools {
@@ -51,8 +51,8 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step) {
       for (const cfd::Side side : wall.open)
         (cfd::is_max(side) ? setup.domain.open_max : setup.domain.open_min)[cfd::axis_of(side)] = 1;
     }
-    setup.walls.push_back(make_wall(spec, wall));
   }
+  setup.walls = make_walls(spec);
   for (const PopulationSpec& population : spec.particles) {
     if (!population.feed) continue;
     const DiameterRange diameters = diameter_range(population);

@@ -428,7 +428,8 @@ class Checker {
       if (given(path)) warn(path, fmt::format("of no use: the case has no {}", why));
     };
     if (spec_.particles.empty()) {
-      for (const auto* path : {"time.particle_step", "time.impact_speed", "time.settle", "materials", "walls",
+      if (!spec_.gas) unused("walls", "particles and no gas");
+      for (const auto* path : {"time.particle_step", "time.impact_speed", "time.settle", "materials",
                                "contacts", "coupling", "output.snapshots.particles"}) {
         unused(path, "particles");
       }

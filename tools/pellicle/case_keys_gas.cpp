@@ -48,6 +48,18 @@ void put_together(const BoundaryKinds& kinds, cfd::BoundaryPatch& patch) {
   if (kinds.symmetry) patch.kind = cfd::Symmetry{};
 }
 
+void describe_disc(Keys& keys, cfd::DiscRegion& disc) {
+  keys.vector({"centre", "its middle; the coordinate across the side does not count", Need::required},
+              {dimension::length}, disc.centre);
+  keys.real({"radius", "of the disc", Need::required}, {dimension::length, range::positive}, disc.radius);
+  keys.real({"inner_radius", "of the hole in its middle; 0: no hole"},
+            {dimension::length, range::non_negative}, disc.inner_radius);
+  if (keys.reading() && keys.given("radius") && !(disc.inner_radius < disc.radius)) {
+    keys.problem("inner_radius", fmt::format("{:g} m is not below the radius of {:g} m; a smaller one",
+                                             disc.inner_radius, disc.radius));
+  }
+}
+
 void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
   if (keys.reading()) patch.where = keys.where();
   keys.text({"name", "of the boundary", Need::required}, TextRule::name, patch.name);
@@ -57,14 +69,19 @@ void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
   if (on) patch.on = static_cast<cfd::Side>(*on);
 
   std::optional<cfd::BoundaryPatch> region;
-  if (patch.region) region = patch;
+  if (patch.region || patch.disc) region = patch;
   keys.section<cfd::BoundaryPatch>(
       {"region", "the part of the side", Need::has_default, "what no other region of the side takes"}, region,
       [](Keys& inner, cfd::BoundaryPatch& held) {
         inner.section<Box>({"box", "the part of the side inside this box"}, held.region, describe_flat_box);
-        inner.exactly_one({"box"});
+        inner.section<cfd::DiscRegion>({"disc", "the part of the side inside this disc, or annulus"},
+                                       held.disc, describe_disc);
+        inner.exactly_one({"box", "disc"});
       });
-  if (keys.reading() && region) patch.region = region->region;
+  if (keys.reading() && region) {
+    patch.region = region->region;
+    patch.disc = region->disc;
+  }
 
   BoundaryKinds kinds = keys.reading() ? BoundaryKinds{} : take_apart(patch);
   keys.section<cfd::Inlet>({"inlet", "gas comes in at right angles to the side"}, kinds.inlet,
@@ -73,7 +90,12 @@ void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
                                         {dimension::velocity, range::non_negative}, inlet.velocity);
                              inner.real({"flow_rate", "at the inlet's own temperature and pressure"},
                                         {dimension::flow_rate, range::non_negative}, inlet.flow_rate);
+                             inner.real({"share", "of the flow rate that comes through this inlet"},
+                                        {dimension::pure_number, {.min = 0, .max = 1}}, inlet.share);
                              inner.exactly_one({"velocity", "flow_rate"});
+                             if (inner.reading() && inlet.velocity && inlet.share != 1) {
+                               inner.problem("share", "there is no flow rate to share; only with flow_rate");
+                             }
                            });
   keys.section<cfd::Outlet>({"outlet", "gas leaves"}, kinds.outlet, [](Keys& inner, cfd::Outlet& outlet) {
     inner.real({"pressure", "at the outlet, without its hydrostatic part"}, {dimension::pressure},
@@ -121,6 +143,9 @@ void describe_gas(Keys& keys, CaseSpec& spec) {
         inner.real({"viscosity", "dynamic", Need::required}, {dimension::viscosity, range::positive},
                    gas.options.viscosity);
         inner.vector({"velocity", "initial"}, {dimension::velocity}, gas.velocity);
+        inner.vector({"inside", "a point in the gas, where walls divide the domain", Need::has_default,
+                      "a point of the first inlet that has a region, else of the first inlet"},
+                     {dimension::length}, gas.inside);
         inner.vector({"body_force", "on the gas besides gravity"}, {dimension::force_per_volume},
                      gas.options.body_force);
         inner.section<GridSpec>({"grid", "cells of the domain", Need::required}, gas.grid,

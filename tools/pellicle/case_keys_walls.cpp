@@ -20,6 +20,10 @@ namespace range = core::range;
 
 constexpr core::Dimension frequency{"a frequency", "Hz", "50 Hz"};
 
+constexpr core::ModelInfo gas_wall_list[] = {{"no_slip", "the gas sticks to it"},
+                                             {"free_slip", "the gas slips along it without shear"},
+                                             {"open", "the gas passes it"}};
+
 /// A direction of any length, made one of length 1.
 void direction_key(Keys& keys, const core::Key& key, Vec3& direction) {
   keys.vector(key, {}, direction);
@@ -116,6 +120,8 @@ void describe_wall(Keys& keys, WallSpec& wall, CaseSpec& spec) {
   keys.vector({"torque_about", "point that the torque on the wall is reported about", Need::has_default,
                "spin.through, else [0, 0, 0]"},
               {dimension::length}, wall.torque_about);
+  keys.choice({"gas", "what it is to the gas; the sides of the domain get theirs from gas.boundaries"},
+              gas_wall_list, wall.gas);
   if (!keys.reading()) return;
   const Real speed = norm(wall.velocity);
   const auto leads_through = [&](const Vec3& normal) {

@@ -184,6 +184,9 @@ struct VibrationSpec {
   Real phase = 0;      ///< [rad]
 };
 
+/// What a wall is to the gas.
+enum class GasWall { no_slip, free_slip, open };
+
 struct WallSpec {
   std::string where;
   std::string name;
@@ -201,6 +204,7 @@ struct WallSpec {
   std::optional<SpinSpec> spin;
   std::optional<VibrationSpec> vibration;
   std::optional<Vec3> torque_about;  ///< [m]
+  GasWall gas = GasWall::no_slip;
 };
 
 /// A box in which cells are smaller.
@@ -227,8 +231,9 @@ struct GridSpec {
 };
 
 struct GasSpec {
-  cfd::GasOptions options;  ///< gravity is that of the case
-  Vec3 velocity;            ///< initial [m/s]
+  cfd::GasOptions options;     ///< gravity is that of the case
+  Vec3 velocity;               ///< initial [m/s]
+  std::optional<Vec3> inside;  ///< a point in the gas, where walls divide the domain [m]
   GridSpec grid;
   std::vector<cfd::BoundaryPatch> boundaries;  ///< what none of them takes is a no-slip wall
 };

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "dem/engine.hpp"
 #include "tools/pellicle/build_case.hpp"
+#include "tools/pellicle/build_gas.hpp"
 #include "tools/pellicle/case_checks.hpp"
 #include "tools/pellicle/case_file.hpp"
 #include "tools/pellicle/commands.hpp"
@@ -180,13 +181,16 @@ namespace {
 /// Builds what a run would build, so that all that can be wrong with the case shows.
 void try_to_build(const CaseSpec& spec) {
   const Kokkos::ScopeGuard kokkos(Kokkos::InitializationSettings().set_disable_warnings(true));
+  std::vector<dem::Wall> walls;
   try {
     if (!spec.particles.empty()) {
       dem::Engine particles(make_engine_setup(spec, spec.time.particle_step));
       particles.set_particles(make_particles(spec, particles.setup().walls));
+      walls = particles.setup().walls;
+    } else {
+      walls = make_walls(spec);
     }
-    if (spec.gas)
-      cfd::GasSolver(make_grid(spec.gas->grid, spec.domain), spec.gas->options, spec.gas->boundaries);
+    if (spec.gas) make_gas_solver(spec, walls);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", spec.file, error.what()));
   }

@@ -12,6 +12,7 @@
 #include "core/version.hpp"
 #include "coupling/substeps.hpp"
 #include "tools/pellicle/build_case.hpp"
+#include "tools/pellicle/build_gas.hpp"
 
 namespace pellicle::tools {
 namespace {
@@ -40,7 +41,7 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
     feeds_ = make_feeds(spec_, particles_->setup().domain);
   }
   if (spec_.gas) {
-    gas_.emplace(make_grid(spec_.gas->grid, spec_.domain), spec_.gas->options, spec_.gas->boundaries);
+    gas_.emplace(make_gas_solver(spec_, particles_ ? particles_->setup().walls : make_walls(spec_)));
     no_particles_ = cfd::make_empty_exchange(gas_->grid());
   }
   if (particles_ && gas_) {
