@@ -79,9 +79,9 @@ void expect_closed_cells(const CartesianGrid& grid, const CutCells& cut) {
       largest = std::max(largest, full);
     }
     // A neighbour that was left out as too small closes what it shared: of a corner of 1e-3 of the volume about
-    // (6e-3)^(2/3) / 2 = 1.7 % of a face, of a wedge (2e-3)^(1/2) = 4.5 %. A curved piece is larger than its vector.
-    EXPECT_LE(norm(total), piece.area + 0.05 * largest);
-    EXPECT_NEAR(norm(total - piece.area * piece.normal), 0, 0.2 * piece.area + 0.05 * largest)
+    // (6e-3)^(2/3) / 2 = 1.7 % of a face, of a wedge (2e-3)^(1/2) = 4.5 %, and there may be two. A curved piece is larger than its vector.
+    EXPECT_LE(norm(total), piece.area + 0.08 * largest);
+    EXPECT_NEAR(norm(total - piece.area * piece.normal), 0, 0.2 * piece.area + 0.08 * largest)
         << at.x << ' ' << at.y << ' ' << at.z;
   }
 }

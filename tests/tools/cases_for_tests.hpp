@@ -98,6 +98,25 @@ gas:
     - {name: back, on: back, symmetry: {}}
 )";
 
+/// Gas in a cone with a thin tube in it, and a sieve that it passes.
+inline constexpr const char* chamber_case =
+    R"(domain: {min: ["-60 mm", "-60 mm", 0], max: ["60 mm", "60 mm", "150 mm"]}
+time: {end: 0.01, gas_step: 0.001}
+walls:
+  - {name: cone, cone: {from: [0, 0, 0], to: [0, 0, "160 mm"], from_radius: "30 mm", to_radius: "50 mm"}, material: steel}
+  - {name: tube, cylinder: {from: [0, 0, "30 mm"], to: [0, 0, "90 mm"], radius: "15 mm"}, material: steel, gas: free_slip}
+  - {name: sieve, disc: {centre: [0, 0, "10 mm"], normal: [0, 0, 1], radius: "35 mm"}, material: steel, gas: open}
+gas:
+  density: 1.2
+  viscosity: 1.8e-5
+  inside: [0, 0, "50 mm"]
+  grid: {cells: [12, 12, 15]}
+  boundaries:
+    - {name: jet, on: bottom, region: {disc: {centre: [0, 0, 0], radius: "5 mm"}}, inlet: {flow_rate: "3.5 m3/h", share: 0.5}}
+    - {name: plate, on: bottom, region: {disc: {centre: [0, 0, 0], radius: "30 mm", inner_radius: "5 mm"}}, inlet: {velocity: 1}}
+    - {name: top, on: top, outlet: {}}
+)";
+
 /// Particles of every way to be spread in size.
 inline constexpr const char* powders_case = R"(domain: {min: [0, 0, 0], max: ["40 mm", "40 mm", "100 mm"]}
 time: {end: 0.1, particle_step: 1e-6, settle: {until: quiet, at_most: "0.5 s", speed: "2 mm/s"}}

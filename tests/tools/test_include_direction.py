@@ -73,10 +73,10 @@ class IncludeDirection(unittest.TestCase):
         # Laws, and what a law is told of a contact, stand by themselves: a test calls them without any loop.
         wrong = []
         for path in sources():
-            if not path.name.endswith(("_laws.hpp", "_state.hpp")):
+            if not path.name.endswith(("_laws.hpp", "contact_state.hpp")):
                 continue
             for kind, name in includes(path):
-                own = name.startswith(f"{path.parent.name}/") and name.endswith(("_laws.hpp", "_state.hpp"))
+                own = name.startswith(f"{path.parent.name}/") and name.endswith(("_laws.hpp", "contact_state.hpp"))
                 if kind == '"' and not name.startswith("core/") and not own:
                     wrong.append(f'{path.relative_to(TOP)}: a file of laws must not include "{name}"')
         self.assertEqual(wrong, [], "\n" + "\n".join(wrong))

@@ -60,6 +60,17 @@ void describe_disc(Keys& keys, cfd::DiscRegion& disc) {
   }
 }
 
+void check_inside(Keys& keys, const Vec3& point, const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (point[axis] >= box.min[axis] && point[axis] <= box.max[axis]) continue;
+    keys.problem(
+        "inside",
+        fmt::format("it is out of the domain; a point within [{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}] m",
+                    box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
+    return;
+  }
+}
+
 void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
   if (keys.reading()) patch.where = keys.where();
   keys.text({"name", "of the boundary", Need::required}, TextRule::name, patch.name);
@@ -146,6 +157,7 @@ void describe_gas(Keys& keys, CaseSpec& spec) {
         inner.vector({"inside", "a point in the gas, where walls divide the domain", Need::has_default,
                       "a point of the first inlet that has a region, else of the first inlet"},
                      {dimension::length}, gas.inside);
+        if (inner.reading() && gas.inside) check_inside(inner, *gas.inside, spec.domain.box);
         inner.vector({"body_force", "on the gas besides gravity"}, {dimension::force_per_volume},
                      gas.options.body_force);
         inner.section<GridSpec>({"grid", "cells of the domain", Need::required}, gas.grid,
