@@ -9,6 +9,7 @@
 #include "dem/contact_force.hpp"
 #include "dem/contact_loop.hpp"
 #include "dem/lanes.hpp"
+#include "dem/prefetch.hpp"
 
 namespace pellicle::dem {
 
@@ -68,7 +69,10 @@ struct BlockContactKernel {
     for (std::int32_t slot = in.list.offset(begin); slot < last; slot += pair_window) {
       const std::int32_t stop = std::min(slot + pair_window, last);
       std::uint16_t owner[pair_window + 32];
+      const Index first = p;
       p = find_owners(begin, p, slot, stop, owner);
+      prefetch_next_block(first, p);
+      prefetch_others(begin, stop, std::min(stop + pair_window, last));
       gather_touching(begin, slot, stop, owner, window);
       if (window.count == 0) continue;
       gather_motion(window);
@@ -93,6 +97,34 @@ struct BlockContactKernel {
   using Sum = lanes::Real8;
   static constexpr bool remembers = Laws::springs > 0;
   static constexpr int components = 3 * Laws::springs;
+
+  /// Asks for as many particles of the next block as this window has. Rows meet their partners in an order that the
+  /// processor cannot foresee, and beds of more than some ten thousand particles do not fit into its cache.
+  KOKKOS_FORCEINLINE_FUNCTION void prefetch_next_block(Index first, Index last) const {
+    const Index from = std::min(first + contact_block, in.particles.count);
+    const Index to = std::min(last + contact_block, in.particles.count);
+    prefetch(in.particles.position_radius.data(), from, to);
+    prefetch(in.particles.velocity_spin.data(), from, to);
+    prefetch_to_write(out.force.data(), from, to);
+    prefetch_to_write(out.torque.data(), from, to);
+  }
+
+  /// Asks for those partners of the next window that are in other blocks.
+  KOKKOS_FORCEINLINE_FUNCTION void prefetch_others(Index begin, std::int32_t slot, std::int32_t stop) const {
+    std::int32_t other[pair_window + 8];
+    int n = 0;
+    // A rest of fewer than eight has to do without.
+    for (; slot + 8 <= stop; slot += 8) {
+      const auto j = lanes::load<lanes::Int8>(in.list.partner.data() + slot);
+      const lanes::Mask8 outside = lanes::outside(j, begin, begin + contact_block - 1);
+      lanes::pack(outside, j, other + n);
+      n += lanes::count(outside);
+    }
+    for (int k = 0; k < n; ++k) {
+      prefetch(in.particles.position_radius.data() + other[k]);
+      prefetch(in.particles.velocity_spin.data() + other[k]);
+    }
+  }
 
   /// Whose rows the slots belong to, counted from the block's first particle. `p` is the particle of the first slot or one
   /// before; returns that of the last.
@@ -181,7 +213,7 @@ struct BlockContactKernel {
     // In a gas of particles hardly any touch.
     if (touches == 0) return n;
     // For gather_motion.
-    for (int k = 0; k < 8; ++k) __builtin_prefetch(in.particles.velocity_spin.data() + partner[k]);
+    for (int k = 0; k < 8; ++k) prefetch(in.particles.velocity_spin.data() + partner[k]);
     lanes::pack(touches, dx, w.dx + n);
     lanes::pack(touches, dy, w.dy + n);
     lanes::pack(touches, dz, w.dz + n);
@@ -243,7 +275,7 @@ struct BlockContactKernel {
     if (touches == 0) return;
     for (int e = 0; e < components; ++e) {
       // Of the next window: springs come from far away.
-      __builtin_prefetch(out.springs.component(e) + slot + pair_window, 1);
+      prefetch_to_write(out.springs.component(e) + slot + pair_window);
       const auto spring = lanes::load<lanes::Real8>(out.springs.component(e) + slot);
       lanes::pack(touches, lanes::keep(goes_on, spring), w.spring[e] + n);
     }

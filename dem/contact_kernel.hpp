@@ -3,6 +3,7 @@
 // contact_loop_*.cpp.
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 #include <variant>
 
@@ -98,9 +99,11 @@ void run_contact_kernel(const ContactInput& in, const Laws& laws, const ContactR
   const Index blocks = contact_block_count(in.particles.count);
 #ifndef KOKKOS_ENABLE_CUDA
   if (in.list.half) {
-    // Dense and dilute blocks cost differently: threads take them as they come. Blocks do not share results.
+    // Dense and dilute blocks cost differently: threads take them as they come. Blocks do not share results. Of many
+    // blocks a thread takes several at once: each asks for the memory of the next.
+    const int chunk = std::clamp(blocks / (32 * Device().concurrency()), 1, 8);
     const Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>> range(0, blocks,
-                                                                               Kokkos::ChunkSize(1));
+                                                                               Kokkos::ChunkSize(chunk));
     if (in.domain.repeats()) {
       Kokkos::parallel_for("dem::contact_kernel::block_periodic", range,
                            BlockContactKernel<Laws, false, true>{in, out, laws});

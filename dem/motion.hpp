@@ -7,6 +7,7 @@
 
 #ifndef KOKKOS_ENABLE_CUDA
 #include "dem/lanes.hpp"
+#include "dem/prefetch.hpp"
 #endif
 
 namespace pellicle::dem {
@@ -110,6 +111,7 @@ struct MotionKernelInLanes {
     using lanes::Float4;
     using lanes::Real4;
     using lanes::Real8;
+    prefetch_ahead(p);
     VelocitySpin& motion = particles.velocity_spin(p);
     const Vec3 fluid = fluid_force(p, motion.velocity(), step.kick);
     const Real m = motion.inverse_mass;
@@ -146,6 +148,20 @@ struct MotionKernelInLanes {
       const Vec3 v{velocity[0], velocity[1], velocity[2]};
       if (!(norm_squared(v) < broken_speed * broken_speed)) Kokkos::atomic_max(&flags().broken_particle, p);
     }
+  }
+
+ private:
+  /// These are more streams than the processor follows by itself.
+  KOKKOS_FORCEINLINE_FUNCTION void prefetch_ahead(Index p) const {
+    constexpr Index distance = 48;
+    const Index q = Kokkos::min(p + distance, particles.count - 1);
+    prefetch_to_write(&particles.velocity_spin(q));
+    prefetch_to_write(&particles.position_radius(q));
+    prefetch_to_write(&particles.acceleration(q));
+    prefetch_to_write(&particles.angular_acceleration(q));
+    prefetch_to_write(&list.displacement(q));
+    prefetch(&contacts.force(q));
+    prefetch(&contacts.torque(q));
   }
 };
 

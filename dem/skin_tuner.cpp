@@ -10,8 +10,10 @@ namespace {
 constexpr Real largest_share = 0.4;
 constexpr std::int64_t last_rung = 8;
 
-/// What a build costs, in entries a particle that are looked at in a substep: about 150 ns and 2 ns.
-constexpr Real build_cost = 75;
+/// What a build costs, in entries a particle that are looked at in a substep: the value with which a bed of 50,000
+/// particles in motion ran quickest (docs/performance.md); the times of the parts, 170 to 230 ns and 1.4 to 4 ns, leave
+/// it open.
+constexpr Real build_cost = 40;
 
 /// A period ends with so many builds, or steps where hardly any are needed.
 constexpr std::int64_t period_builds = 4;

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "dem/contact_force.hpp"
+#include "dem/prefetch.hpp"
 #include "dem/wall_candidates.hpp"
 #include "dem/wall_contacts.hpp"
 
@@ -29,9 +30,12 @@ struct WallContactKernel {
     const std::int64_t count = list.count;
     const auto begin = static_cast<Index>(block * count / wall_blocks);
     const auto end = static_cast<Index>((block + 1) * count / wall_blocks);
-    for (Index k = begin; k < end; ++k)
-      add_contacts(k,
-                   reports.data() + static_cast<std::size_t>(block) * static_cast<std::size_t>(wall_count));
+    WallReport* const report =
+        reports.data() + static_cast<std::size_t>(block) * static_cast<std::size_t>(wall_count);
+    for (Index k = begin; k < end; ++k) {
+      prefetch_ahead(k);
+      add_contacts(k, report);
+    }
   }
 
   KOKKOS_INLINE_FUNCTION void add_contacts(Index k, WallReport* report) const {
@@ -66,6 +70,23 @@ struct WallContactKernel {
     out.force(p) = force;
     out.torque(p) = torque;
     out.touching_new(p) += candidates.count();
+  }
+
+  /// Particles near walls are far apart in memory.
+  KOKKOS_FORCEINLINE_FUNCTION void prefetch_ahead(Index k) const {
+    constexpr Index distance = 6;
+    const Index ahead = Kokkos::min(k + distance, list.count - 1);
+    const Index p = list.particle(ahead);
+    prefetch(&in.particles.position_radius(p));
+    prefetch(&in.particles.velocity_spin(p));
+    prefetch_to_write(&out.force(p));
+    prefetch_to_write(&out.torque(p));
+    if constexpr (springs > 0) {
+      const WallMemory& memory = history.memory(ahead);
+      prefetch_to_write(&memory.count);
+      prefetch_to_write(&memory.towards[0]);
+      prefetch_to_write(&history.spring(ahead * most_wall_contacts * springs));
+    }
   }
 
   /// The force of one wall on the particle, reported.

@@ -15,7 +15,7 @@ struct Model {
   Real slope, lifetime;
 
   Real entries(Real share) const { return 4 + slope * share; }
-  Real cost(Real share) const { return entries(share) + 75 / std::max(1.0, lifetime * share); }
+  Real cost(Real share) const { return entries(share) + 40 / std::max(1.0, lifetime * share); }
 };
 
 /// The shares in use over a run.

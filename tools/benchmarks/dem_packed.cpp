@@ -5,9 +5,9 @@
 //   build/release/dem_packed --sizes 10000,50000,200000,1000000,5000000 --steps 40
 //
 // The bed is 3 mm glass beads (E 1e7 Pa, ν 0.22, e 0.97, µ 0.3) in a box, at a step of 1e-5 s. With --positions (three
-// columns [m], of a bed settled in a box of 145 × 60 mm) copies of that bed stand side by side, without walls between
-// them. Without, a block of 36.25 × 30 mm is settled between periodic sides first (about half a minute), and copies of it
-// fill the box; of the beads that the walls would cut, none are kept.
+// columns [m], of a bed settled in a box of 145 × 60 mm) that bed and its mirror images stand side by side, without walls
+// between them. Without, a block of 36.25 × 30 mm is settled between periodic sides first (about half a minute), and
+// copies of it fill the box; of the beads that the walls would cut, none are kept.
 
 #include <CLI/CLI.hpp>
 #include <Kokkos_Core.hpp>
@@ -146,7 +146,12 @@ Scene make_scene(const Bed& bed, int count, Real agitation) {
   for (int i = 0; i < nx; ++i) {
     for (int j = 0; j < ny; ++j) {
       for (const Vec3& from : bed.positions) {
-        const Vec3 x{from.x + i * bed.width, from.y + j * bed.depth, from.z};
+        // Every second copy of a bed that settled between walls is a mirror image: beads that lay against a wall lie
+        // against their image in the same way, so that beds of all sizes are equally quiet.
+        const bool turn_x = bed.walls && i % 2 == 1;
+        const bool turn_y = bed.walls && j % 2 == 1;
+        const Vec3 x{(turn_x ? bed.width - from.x : from.x) + i * bed.width,
+                     (turn_y ? bed.depth - from.y : from.y) + j * bed.depth, from.z};
         const Real least = 0.9 * radius;  // beads that settled at a wall are in it a little
         if (x.x < least || x.y < least || x.x > scene.size.x - least || x.y > scene.size.y - least) continue;
         dem::ParticleSeed seed;
