@@ -265,12 +265,11 @@ void set_boundary_values(Boundaries& result, const FlowGeometry& geometry) {
   for (int axis = 0; axis < 3; ++axis) {
     if (s.periodic[static_cast<std::size_t>(axis)]) continue;
     for (int side = 0; side < 2; ++side) {
-      result.values[static_cast<std::size_t>(2 * axis + side)].resize(
-          static_cast<std::size_t>(s.plane_size(axis)));
+      result.values[side_number(axis, 2 * side - 1)].resize(static_cast<std::size_t>(s.plane_size(axis)));
     }
   }
   for (const BoundaryPiece& piece : result.pieces) {
-    const auto side = static_cast<std::size_t>(2 * piece.axis + (piece.outward > 0 ? 1 : 0));
+    const auto side = side_number(piece.axis, piece.outward);
     BoundaryValue& value = result.values[side][static_cast<std::size_t>(piece.place)];
     const Real share = piece.area / geometry.area[static_cast<std::size_t>(piece.axis)](piece.face);
     for (int a = 0; a < 3; ++a) {

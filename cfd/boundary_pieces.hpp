@@ -25,6 +25,12 @@ struct BoundaryPiece {
   Real pressure = 0;    ///< at an outlet [Pa]
 };
 
+/// Number of the side that lies across an axis, outward (+1 on a max side, -1 on a min side): 0 to 5.
+inline std::size_t side_number(int axis, Real outward) {
+  const int side = 2 * axis + (outward > 0 ? 1 : 0);
+  return static_cast<std::size_t>(side);
+}
+
 /// Values that convection and gradients see at a boundary face: fixed + free * value in the cell.
 struct BoundaryValue {
   Vec3 fixed;

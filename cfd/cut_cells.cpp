@@ -27,6 +27,8 @@ struct Polygon {
 
 using Place = std::array<std::size_t, 3>;
 
+std::size_t entry(Index i) { return static_cast<std::size_t>(i); }
+
 // Sums over the oriented triangles that bound a body.
 struct Body {
   Vec3 apex;
@@ -296,8 +298,8 @@ class Cutter {
         const Index3 beyond = grid_.coordinates(p);
         Place from{}, to{};
         for (std::size_t d = 0; d < 3; ++d) {
-          from[d] = static_cast<std::size_t>(2 * at[static_cast<int>(d)] + 1);
-          to[d] = static_cast<std::size_t>(2 * beyond[static_cast<int>(d)] + 1);
+          from[d] = entry(2 * at[static_cast<int>(d)] + 1);
+          to[d] = entry(2 * beyond[static_cast<int>(d)] + 1);
         }
         Place face = to;
         --face[a];
@@ -307,8 +309,8 @@ class Cutter {
         auto& share = result_.open_share[a][static_cast<std::size_t>(f)];
         if (share == 0) return;
         share = 0;
-        add_thin_piece(axis, m, at, near, far, 1);
-        add_thin_piece(axis, p, beyond, near, far, -1);
+        add_thin_piece(axis, m, at, near, far, 1, p);
+        add_thin_piece(axis, p, beyond, near, far, -1, m);
       });
       copy_first_shares(axis);
     }
@@ -316,7 +318,7 @@ class Cutter {
 
   // The side of a thin surface that a cell sees: towards +axis (sense 1) or -axis.
   void add_thin_piece(int axis, Index c, const Index3& at, const SurfaceLattice::Crossing* near,
-                      const SurfaceLattice::Crossing* far, Real sense) {
+                      const SurfaceLattice::Crossing* far, Real sense, Index other) {
     const Real half = 0.5 * grid_.width(axis, at[axis]);
     const SurfaceLattice::Crossing* seen =
         sense > 0 ? (near != nullptr ? near : far) : (far != nullptr ? far : near);
@@ -326,6 +328,7 @@ class Cutter {
     SurfacePiece piece;
     piece.cell = c;
     piece.surface = seen->surface;
+    piece.beyond = other;
     const Real along = seen->normal[axis];
     piece.normal = along * sense > 0 ? -seen->normal : seen->normal;
     piece.point = {grid_.center(0, at.x), grid_.center(1, at.y), grid_.center(2, at.z)};
@@ -423,21 +426,21 @@ class Cutter {
       for (int axis = 0; axis < 3; ++axis) {
         auto& share = result_.open_share[static_cast<std::size_t>(axis)];
         const Index minus = stencil_.face(axis, at.x, at.y, at.z);
-        share[static_cast<std::size_t>(minus)] = 0;
-        share[static_cast<std::size_t>(minus + stencil_.face_step(axis))] = 0;
+        share[entry(minus)] = 0;
+        share[entry(minus + stencil_.face_step(axis))] = 0;
         if (!stencil_.periodic[static_cast<std::size_t>(axis)]) continue;
         const Index around = (stencil_.n[axis] - at[axis]) * stencil_.face_step(axis);
-        if (at[axis] == 0) share[static_cast<std::size_t>(minus + around)] = 0;
+        if (at[axis] == 0) share[entry(minus + around)] = 0;
         if (at[axis] == stencil_.n[axis] - 1) {
-          share[static_cast<std::size_t>(minus - at[axis] * stencil_.face_step(axis))] = 0;
+          share[entry(minus - at[axis] * stencil_.face_step(axis))] = 0;
         }
       }
     }
   }
 
   void collect() {
-    const auto closed = [&](const auto& entry) {
-      return result_.open[static_cast<std::size_t>(entry.cell)] == 0;
+    const auto closed = [&](const auto& part) {
+      return result_.open[static_cast<std::size_t>(part.cell)] == 0;
     };
     std::erase_if(result_.parts, closed);
     std::erase_if(result_.pieces, closed);

@@ -28,7 +28,7 @@ void FaceBalance::prepare(const GasFields& fields) {
   const Real* beta = fields.exchange_coefficient.data();
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const Real* force = fields.force.data() + axis * fields.cells;
+    const Real* force = &fields.force(axis * fields.cells);
     const Real body = options_.body_force[axis];
     for_faces(labels[a], geometry_.stencil, axis, [&](Index f, Index m, Index p, Index position, Index) {
       const Real wm = geometry_.axis[a].series_minus[static_cast<std::size_t>(position)];
@@ -64,9 +64,9 @@ void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, c
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const AxisMetrics& metrics = geometry_.axis[a];
-    const Real* own = momentum.own().data() + axis * cells;
-    const Real* in = influx.data() + axis * cells;
-    const Real* relax = relaxation.data() + axis * cells;
+    const Real* own = &momentum.own()(axis * cells);
+    const Real* in = &influx(axis * cells);
+    const Real* relax = &relaxation(axis * cells);
     const Real* normal_value = momentum.convection().normal_value[a].data();
     Real* velocity = fields.superficial[a].data();
     const Real* velocity_old = fields.superficial_old[a].data();
@@ -195,7 +195,7 @@ void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) 
       const Index first = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
       const Real* delta = inertial_[a].data() + first;
       const Real* eps = fields.void_fraction.data() + row.cell;
-      Real* u = fields.velocity.data() + axis * fields.cells + row.cell;
+      Real* u = &fields.velocity(row.cell + axis * fields.cells);
       for (Index i = 0; i < s.n.x; ++i) u[i] += 0.5 * (delta[i] + delta[i + step]) / eps[i];
     });
   }
@@ -268,7 +268,7 @@ void FaceBalance::compute_cell_force(const GasFields& fields, const MomentumEqua
       const Real* eps = fields.void_fraction.data() + row.cell;
       const Real* beta = fields.exchange_coefficient.data() + row.cell;
       const Real* volume = geometry_.volume.data() + row.cell;
-      Real* out = force.data() + axis * fields.cells + row.cell;
+      Real* out = &force(row.cell + axis * fields.cells);
       for (Index i = 0; i < s.n.x; ++i) {
         out[i] = 0.5 * volume[i] *
                  ((inertial[i] + inertial[i + step]) + beta[i] / eps[i] * (velocity[i] + velocity[i + step]));

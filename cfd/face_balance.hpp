@@ -40,7 +40,7 @@ class FaceBalance {
   /// Pressure gradient of each cell, without smearing across jumps; after compute_cell_force.
   void compute_pressure_gradient(const GasFields& fields, const HostArray<Vec3>& gradient) const;
   /// Pressure at a boundary piece: what the cell's half up to the boundary leaves; after compute_cell_force.
-  Real boundary_pressure(const GasFields& fields, std::size_t piece) const;
+  Real boundary_pressure(const GasFields& fields, std::size_t b) const;
   /// Force of the pressure on the gas of a cell by the surfaces in it [N]: what its faces leave of the cell's pressure
   /// force; after compute_cell_force.
   Vec3 surface_pressure_force(const GasFields& fields, Index cell) const;
@@ -52,7 +52,7 @@ class FaceBalance {
   void predict_outlets(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
                        const HostArray<Real>& relaxation, Real dt, PressureMatrix& matrix);
   void set_boundary_inertia(const GasFields& fields);
-  Real outlet_pressure(const GasFields& fields, std::size_t piece) const;
+  Real outlet_pressure(const GasFields& fields, std::size_t b) const;
   Real side_gradient(const GasFields& fields, Index cell, int axis, Index face) const;
   Real gradient_from(const GasFields& fields, Index cell, int axis, Real inertial, Real velocity) const;
   std::array<Real, 2> side_gradients(const GasFields& fields, const BlockedCell& blocked, int axis) const;

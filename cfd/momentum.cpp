@@ -114,8 +114,8 @@ void MomentumEquation::assemble(const GasFields& fields) {
       Real* own[3];
       Real* source[3];
       for (int b = 0; b < 3; ++b) {
-        own[b] = own_.data() + b * n + row.cell;
-        source[b] = source_.data() + b * n + row.cell;
+        own[b] = &own_(row.cell + b * n);
+        source[b] = &source_(row.cell + b * n);
       }
       const int t1 = (axis + 1) % 3;
       const int t2 = (axis + 2) % 3;
@@ -204,7 +204,7 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
     source_(piece.cell + piece.axis * n) += wall_stress_[b];
     // The mirrored cell, of opposite normal velocity, is a neighbour like any other; it exerts no shear. Beyond a
     // boundary a cell's neighbour is the cell itself.
-    const auto beyond = static_cast<std::size_t>(2 * piece.axis + (piece.outward > 0 ? 1 : 0));
+    const auto beyond = side_number(piece.axis, piece.outward);
     own_(piece.cell + piece.axis * n) += terms.mirror;
     normal_[beyond](piece.cell) -= terms.mirror;
   }
@@ -299,7 +299,8 @@ void MomentumEquation::apply(const char* label, const Real* u, Result&& result) 
   for_rows(label, s, [&](const Index r) {
     const Row row = s.row(r);
     for (int a = 0; a < 3; ++a) {
-      const Real* x = u + a * n;
+      const Index shift = a * n;
+      const Real* x = u + shift;
       const auto pick = [&](std::size_t d) {
         return (static_cast<int>(d / 2) == a ? normal_[d] : near_[d]).data() + row.cell;
       };

@@ -35,10 +35,10 @@ class MomentumEquation {
   const HostArray<Real>& own() const { return own_; }
   const ConvectionCorrection& convection() const { return correction_; }
   /// Momentum that a boundary piece carries into the gas per second, by convection and by viscous stress [N].
-  Vec3 convected_inflow(const GasFields& fields, std::size_t piece) const;
-  Vec3 shear_force(const GasFields& fields, std::size_t piece) const;
+  Vec3 convected_inflow(const GasFields& fields, std::size_t b) const;
+  Vec3 shear_force(const GasFields& fields, std::size_t b) const;
   /// Viscous force of a piece of the geometry's surfaces on the gas [N].
-  Vec3 surface_shear(const GasFields& fields, std::size_t piece) const;
+  Vec3 surface_shear(const GasFields& fields, std::size_t b) const;
 
  private:
   Real surface_conductance(const GasFields& fields, const SurfacePiece& piece) const;

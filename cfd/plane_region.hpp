@@ -12,7 +12,7 @@ struct Rectangle {
 
   /// 0 if it is empty.
   Real area() const;
-  Rectangle intersect(const Rectangle& other) const;
+  Rectangle intersect(const Rectangle& b) const;
 };
 
 /// Area that a circle shares with a rectangle.

@@ -140,7 +140,7 @@ void ScalarTransport::set_boundary_values(const GasFields& fields) {
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
     const PieceTerms terms = piece_terms(fields, b);
-    const auto side = static_cast<std::size_t>(2 * piece.axis + (piece.outward > 0 ? 1 : 0));
+    const auto side = side_number(piece.axis, piece.outward);
     const Real share = piece.area / geometry_.area[static_cast<std::size_t>(piece.axis)](piece.face);
     // How far the face's value is from the cell's towards the given one.
     Real towards = terms.inflow > 0 ? 1 : 0;

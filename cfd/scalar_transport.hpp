@@ -68,7 +68,7 @@ class ScalarTransport {
   };
 
   void check(const std::vector<ScalarBoundary>& patches) const;
-  PieceTerms piece_terms(const GasFields& fields, std::size_t piece) const;
+  PieceTerms piece_terms(const GasFields& fields, std::size_t b) const;
   void prepare(const GasFields& fields);
   void assemble(const GasFields& fields, Real dt, const ScalarSource& source);
   void set_boundary_values(const GasFields& fields);

@@ -74,8 +74,8 @@ void expect_closed_cells(const CartesianGrid& grid, const CutCells& cut) {
       const auto& share = cut.open_share[static_cast<std::size_t>(axis)];
       const Index minus = s.face(axis, at.x, at.y, at.z);
       const Real full = grid.volume(at.x, at.y, at.z) / grid.width(axis, at[axis]);
-      total[axis] = full * (share[static_cast<std::size_t>(minus + s.face_step(axis))] -
-                            share[static_cast<std::size_t>(minus)]);
+      const Index plus = minus + s.face_step(axis);
+      total[axis] = full * (share[static_cast<std::size_t>(plus)] - share[static_cast<std::size_t>(minus)]);
       largest = std::max(largest, full);
     }
     // A neighbour that was left out as too small closes what it shared: of a corner of 1e-3 of the volume about
@@ -164,6 +164,13 @@ TEST(CutCells, ThinTubeClosesFaces) {
   // Both sides of the tube. Areas times |n| sum to its own: over rows at y = 0.05 ... 0.45 of h sqrt(1 - 4 y^2), which is
   // 1 % more than the integral.
   EXPECT_NEAR(surface_area(cut), 2 * 2 * pi * 0.5 * 0.6, 0.02 * 2 * pi * 0.6);
+  for (const SurfacePiece& piece : cut.pieces) {
+    const Index3 at = grid.coordinates(piece.cell);
+    const Index3 beyond = grid.coordinates(piece.beyond);
+    EXPECT_EQ(std::abs(at.x - beyond.x) + std::abs(at.y - beyond.y) + std::abs(at.z - beyond.z), 1);
+    const bool inside = std::hypot(grid.center(0, at.x), grid.center(1, at.y)) < 0.5;
+    EXPECT_EQ(dot(piece.normal, piece.point) < 0, inside);
+  }
   const Stencil s = stencil_of(grid);
   for (Index j = 0; j < 20; ++j) {
     for (Index i = 1; i < 20; ++i) {

@@ -74,23 +74,25 @@ TEST(ImmersedFlow, StillGasStaysStill) {
   auto patches = vessel.patches;
   patches[0].kind = Inlet{0.0, {}};
   patches[1].kind = Inlet{0.0, {}};
-  patches[2].kind = Outlet{1000};
+  constexpr Real pressure = 1e-3;
+  patches[2].kind = Outlet{pressure};
   make_tight(options);
   options.solver.loose_pressure_tolerance = 1e-12;
   GasSolver gas(vessel.grid, options, patches, vessel.immersed);
   const ParticleExchange exchange = make_empty_exchange(vessel.grid);
-  // The first step brings the pressure from 0 to the outlet's, a blow of 100 m/s of which four steps leave 1e-7.
+  // The first step brings the pressure from 0 to the outlet's, a blow of 1e-4 m/s, small enough that its own stagnation
+  // pressure at the outlet does not matter.
   for (int step = 0; step < 4; ++step) gas.update(1e-3, exchange);
   for (Index c = 0; c < vessel.grid.cell_count(); ++c) {
     if (!(gas.geometry().volume(c) > 0)) continue;
-    EXPECT_LT(norm(gas.state().velocity(c)), 1e-5);
-    EXPECT_NEAR(gas.state().pressure(c), 1000, 1e-4);
+    EXPECT_LT(norm(gas.state().velocity(c)), 1e-8);
+    EXPECT_NEAR(gas.state().pressure(c), pressure, 1e-6 * pressure);
   }
-  // The force of the pressure on the cone: 1000 Pa on its shadow, the annulus between its ends, downwards, for the gas is
+  // The force of the pressure on the cone: on its shadow, the annulus between its ends, downwards, for the gas is
   // within and above. Chords between lattice points cost 1 %.
   const Real shadow = pi * (0.09 * 0.09 - 0.06 * 0.06);
-  EXPECT_NEAR(gas.surface_force(0).z, -1000 * shadow, 0.01 * 1000 * shadow);
-  EXPECT_NEAR(gas.surface_force(0).x, 0, 1e-3 * 1000 * shadow);
+  EXPECT_NEAR(gas.surface_force(0).z, -pressure * shadow, 0.01 * pressure * shadow);
+  EXPECT_NEAR(gas.surface_force(0).x, 0, 1e-3 * pressure * shadow);
 }
 
 // A channel between two tilted planes, driven along them: plane Poiseuille flow whatever the tilt.
