@@ -12,7 +12,7 @@ namespace pellicle::dem {
 
 Engine::Engine(const EngineSetup& setup)
     : setup_(setup),
-      walls_(setup.walls, setup.domain.box, setup.contacts.springs()),
+      walls_(setup.walls, setup.domain.box, setup.contacts),
       tuner_(setup.skin.smallest_fraction),
       history_(setup.contacts.springs(), setup.contacts.cohesion.has_value()),
       flags_("dem::engine::flags"),
@@ -168,6 +168,7 @@ ContactReport Engine::collect_report() {
     sum.include(r);
     sum.wall_impulse += r.impulse;
     sum.touching_walls += r.touching;
+    sum.wall_bridges += r.bridges;
     sum.crowded_walls += r.crowded;
     sum.walls.push_back({-r.impulse, r.angular_impulse, r.touching});
   }

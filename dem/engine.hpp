@@ -66,6 +66,7 @@ struct ContactReport : ContactExtremes {
   std::int64_t touching_pairs = 0;
   std::int64_t touching_walls = 0;
   std::int64_t bridges = 0;        ///< between particles
+  std::int64_t wall_bridges = 0;   ///< between particles and walls
   std::int64_t crowded_walls = 0;  ///< times that a particle overlapped more surfaces than are compared
   std::vector<WallLoad> walls;     ///< one for each wall of the set-up
 };

@@ -13,6 +13,7 @@ KOKKOS_INLINE_FUNCTION void add_report(WallReport& sum, const WallReport& r) {
   sum.impulse += r.impulse;
   sum.angular_impulse += r.angular_impulse;
   sum.touching += r.touching;
+  sum.bridges += r.bridges;
   sum.crowded += r.crowded;
 }
 

@@ -16,6 +16,7 @@ struct WallReport : ContactExtremes {
   Vec3 impulse{};             ///< that the wall gave to moving particles [N s]
   Vec3 angular_impulse{};     ///< that particles gave to the wall, about its torque_about [N m s]
   std::int64_t touching = 0;  ///< contacts
+  std::int64_t bridges = 0;   ///< liquid bridges
   std::int64_t crowded = 0;   ///< particles that overlapped more surfaces than are compared
 };
 

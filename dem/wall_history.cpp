@@ -38,7 +38,7 @@ void fill_rows(const WallList& list, const DeviceArray<std::int32_t>& row, Index
 }  // namespace
 
 void WallHistory::pack(const WallList& list, Index particles) {
-  if (springs_ == 0 || place_ != Place::rows) return;
+  if (!remembers_ || place_ != Place::rows) return;
   ensure_size(row_, static_cast<std::size_t>(particles), "dem::wall_history::row");
   Kokkos::deep_copy(row_, -1);
   note_rows(list, rows_.memory, row_);
@@ -55,7 +55,7 @@ void WallHistory::reorder(const DeviceArray<std::int32_t>& order, Index count) {
 }
 
 void WallHistory::unpack(const WallList& list) {
-  if (springs_ == 0) return;
+  if (!remembers_) return;
   const auto rows = static_cast<std::size_t>(list.count);
   ensure_size(rows_.memory, rows, "dem::wall_history::memory");
   ensure_size(rows_.spring, rows * static_cast<std::size_t>(most_wall_contacts * springs_),
@@ -65,13 +65,13 @@ void WallHistory::unpack(const WallList& list) {
 }
 
 void WallHistory::save(core::CheckpointWriter& file) const {
-  if (springs_ == 0) return;
-  if (place_ == Place::rows) throw std::logic_error("springs are saved before they are packed");
+  if (!remembers_) return;
+  if (place_ == Place::rows) throw std::logic_error("contacts with walls are saved before they are packed");
   const bool any = place_ == Place::packed;
-  file.write("dem/wall_history/rows", std::int64_t{any ? packed_rows_ : 0});
-  file.write("dem/wall_history/particles", std::int64_t{any ? particles_ : 0});
+  file.write(name_ + "/rows", std::int64_t{any ? packed_rows_ : 0});
+  file.write(name_ + "/particles", std::int64_t{any ? particles_ : 0});
   if (!any) return;
-  file.write("dem/wall_history/row", host_copy(row_, particles_));
+  file.write(name_ + "/row", host_copy(row_, particles_));
   const auto memory = host_copy(packed_.memory, packed_rows_);
   const auto spring = host_copy(packed_.spring, packed_rows_ * most_wall_contacts * springs_);
   // Contacts that are not there hold what memory held.
@@ -86,21 +86,23 @@ void WallHistory::save(core::CheckpointWriter& file) const {
     const Index first = r * most_wall_contacts * springs_;
     std::copy_n(spring.data() + first, from.count * springs_, meant_spring.data() + first);
   }
-  file.write("dem/wall_history/memory", meant);
-  file.write("dem/wall_history/spring", meant_spring);
+  file.write(name_ + "/memory", meant);
+  if (springs_ > 0) file.write(name_ + "/spring", meant_spring);
 }
 
 void WallHistory::load(const core::CheckpointReader& file) {
   clear();
-  if (springs_ == 0) return;
-  packed_rows_ = static_cast<Index>(file.read_int64("dem/wall_history/rows"));
-  particles_ = static_cast<Index>(file.read_int64("dem/wall_history/particles"));
+  if (!remembers_) return;
+  packed_rows_ = static_cast<Index>(file.read_int64(name_ + "/rows"));
+  particles_ = static_cast<Index>(file.read_int64(name_ + "/particles"));
   if (particles_ == 0) return;
-  read_array(file, "dem/wall_history/row", particles_, row_, "dem::wall_history::row_loaded");
-  read_array(file, "dem/wall_history/memory", packed_rows_, packed_.memory,
+  read_array(file, (name_ + "/row").c_str(), particles_, row_, "dem::wall_history::row_loaded");
+  read_array(file, (name_ + "/memory").c_str(), packed_rows_, packed_.memory,
              "dem::wall_history::memory_loaded");
-  read_array(file, "dem/wall_history/spring", packed_rows_ * most_wall_contacts * springs_, packed_.spring,
-             "dem::wall_history::spring_loaded");
+  if (springs_ > 0) {
+    read_array(file, (name_ + "/spring").c_str(), packed_rows_ * most_wall_contacts * springs_,
+               packed_.spring, "dem::wall_history::spring_loaded");
+  }
   place_ = Place::packed;
 }
 

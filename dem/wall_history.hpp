@@ -1,5 +1,8 @@
-// What contacts with walls remember: springs that live with the list of particles near walls.
+// What contacts and bridges with walls remember: it lives with the list of particles near walls.
 #pragma once
+
+#include <string>
+#include <utility>
 
 #include "core/checkpoint.hpp"
 #include "core/views.hpp"
@@ -8,8 +11,10 @@
 
 namespace pellicle::dem {
 
-/// Contacts of one particle with walls in the last substep.
+/// Contacts (or liquid bridges) of one particle with walls in the last substep.
 struct WallMemory {
+  static constexpr std::int32_t any_wall = -1;
+
   std::int32_t count = 0;
   std::int32_t padding = 0;  ///< so that the bytes of a checkpoint are all meant
   std::int32_t wall[most_wall_contacts] = {};
@@ -23,7 +28,8 @@ struct WallMemory {
     Real largest = 0.9;
     for (int i = 0; i < count; ++i) {
       const Real cosine = dot(towards[i], direction);
-      if (wall[i] != of_wall || ((taken >> i) & 1U) != 0 || !(cosine > largest)) continue;
+      if ((of_wall != any_wall && wall[i] != of_wall) || ((taken >> i) & 1U) != 0 || !(cosine > largest))
+        continue;
       largest = cosine;
       best = i;
     }
@@ -31,16 +37,19 @@ struct WallMemory {
   }
 };
 
-/// Rows of a wall list's particles as the kernel sees them. Empty for laws without springs.
+/// Rows of a wall list's particles as the kernel sees them. Empty where nothing is to be remembered.
 struct WallSprings {
   DeviceArray<WallMemory> memory;  ///< of row k of the list
   DeviceArray<Vec3> spring;        ///< entry (k × most_wall_contacts + contact) × springs + s
 };
 
-/// Carries springs from one wall list to the next, as ContactHistory does for pairs.
+/// Carries contacts and their springs, or bridges, from one wall list to the next, as ContactHistory does for pairs.
 class WallHistory {
  public:
-  explicit WallHistory(int springs = 0) : springs_(springs) {}
+  /// Remembers nothing.
+  WallHistory() = default;
+  /// `name` is the group in checkpoints. Bridges have no springs.
+  WallHistory(std::string name, int springs) : remembers_(true), springs_(springs), name_(std::move(name)) {}
 
   /// Forgets all contacts.
   void clear() { place_ = Place::nowhere; }
@@ -61,7 +70,9 @@ class WallHistory {
  private:
   enum class Place { nowhere, rows, packed };
 
-  int springs_;
+  bool remembers_ = false;
+  int springs_ = 0;
+  std::string name_;
   Place place_ = Place::nowhere;
   WallSprings rows_;
   // Put aside: rows as they were, and where each present particle's row is.

@@ -1,6 +1,7 @@
 #include "dem/wall_list.hpp"
 
 #include "dem/engine_arrays.hpp"
+#include "dem/wall_bridges.hpp"
 
 namespace pellicle::dem {
 namespace {
@@ -11,13 +12,15 @@ struct NearWalls {
   NeighbourList neighbours;
   Real allowances;
   WallGeometry walls;
+  Willett cohesion;
 
   /// Calls `visit(s)` for each of them until it returns true; says whether it did.
   template <class Visit>
   KOKKOS_INLINE_FUNCTION bool visit(Index p, const Visit& visit) const {
     if (particles.velocity_spin(p).inverse_mass == 0) return false;
     const PositionRadius self = particles.position_radius(p);
-    const Real reach = self.radius + allowances * static_cast<Real>(neighbours.displacement(p).allowance);
+    const Real reach = self.radius + wall_bridge_reach(cohesion, self.radius) +
+                       allowances * static_cast<Real>(neighbours.displacement(p).allowance);
     for (Index s = 0; s < walls.primitives; ++s) {
       const WallSurface& surface = walls.surface(s);
       const Vec3 c = walls.pose(surface.wall).to_wall(self.position());
@@ -92,10 +95,10 @@ void fill_rows(const NearWalls& near, const WallList& list) {
 }  // namespace
 
 void build_wall_list(const Particles& particles, const NeighbourList& neighbours, Real allowances,
-                     const WallGeometry& walls, WallList& list) {
+                     const WallGeometry& walls, WallList& list, const Willett& cohesion) {
   list.count = 0;
   if (walls.body.extent(0) == 0) return;
-  const NearWalls near{particles, neighbours, allowances, walls};
+  const NearWalls near{particles, neighbours, allowances, walls, cohesion};
   std::int32_t found = collect_near(near, list.particle);
   if (found > static_cast<std::int32_t>(list.particle.extent(0))) {
     ensure_size(list.particle, static_cast<std::size_t>(found), "dem::wall_list::particle");

@@ -1,6 +1,7 @@
 // Which particles may touch which surfaces of the walls before the next search.
 #pragma once
 
+#include "dem/cohesion_laws.hpp"
 #include "dem/neighbour_list.hpp"
 #include "dem/particles.hpp"
 #include "dem/wall_geometry.hpp"
@@ -16,9 +17,9 @@ struct WallList {
 };
 
 /// Finds the surfaces within reach of each moving particle: its radius, `allowances` times its allowance of the neighbour
-/// list, and the wall's allowance. One allowance reaches to the next build if the neighbour list has just been built,
+/// list, the wall's allowance, and what the liquid bridges of `cohesion` span. One allowance reaches to the next build if the neighbour list has just been built,
 /// two at any later moment. A fixed particle has no walls: it may stand in one as far as it likes.
 void build_wall_list(const Particles& particles, const NeighbourList& neighbours, Real allowances,
-                     const WallGeometry& walls, WallList& list);
+                     const WallGeometry& walls, WallList& list, const Willett& cohesion = {});
 
 }  // namespace pellicle::dem

@@ -5,16 +5,22 @@
 #include <numbers>
 
 #include "dem/engine_arrays.hpp"
+#include "dem/wall_bridges.hpp"
 
 namespace pellicle::dem {
 
-WallSystem::WallSystem(const std::vector<Wall>& walls, const Box& domain, int springs)
+WallSystem::WallSystem(const std::vector<Wall>& walls, const Box& domain, const ContactOptions& contacts)
     : geometry_(make_wall_geometry(walls)),
-      history_(walls.empty() ? 0 : springs),
       report_(make_array<WallReport>("dem::wall_system::report",
                                      static_cast<std::size_t>(wall_blocks) * walls.size())),
       report_scratch_(make_array<WallReport>("dem::wall_system::report_scratch",
                                              static_cast<std::size_t>(report_parts) * walls.size())) {
+  if (!walls.empty() && contacts.springs() > 0)
+    history_ = WallHistory("dem/wall_history", contacts.springs());
+  if (!walls.empty() && contacts.cohesion) {
+    bridges_ = WallHistory("dem/wall_bridges", 0);
+    cohesion_ = *contacts.cohesion;
+  }
   for (const Wall& wall : walls) {
     HostMotion m{};
     m.motion = wall.motion;
@@ -74,9 +80,10 @@ bool WallSystem::list_outdated() const {
 }
 
 void WallSystem::build_list(const Particles& particles, const NeighbourList& neighbours, Real allowances) {
-  history_.pack(list_, particles.count);
-  build_wall_list(particles, neighbours, allowances, geometry_, list_);
+  pack_history(particles);
+  build_wall_list(particles, neighbours, allowances, geometry_, list_, cohesion_);
   history_.unpack(list_);
+  bridges_.unpack(list_);
   for (HostMotion& wall : motions_) {
     wall.at_list = pose_of(wall, time_);
     wall.time_at_list = time_;
@@ -85,7 +92,9 @@ void WallSystem::build_list(const Particles& particles, const NeighbourList& nei
 
 void WallSystem::add_contacts(const ContactInput& input, const ContactOptions& options,
                               const ContactResult& result) {
-  add_wall_contacts({geometry_, list_, history_.rows(), report_}, input, options, result);
+  const WallInput walls{geometry_, list_, history_.rows(), report_};
+  add_wall_contacts(walls, input, options, result);
+  if (options.cohesion) add_wall_bridge_forces(walls, bridges_.rows().memory, input, cohesion_, result);
 }
 
 std::size_t WallSystem::bytes() const {

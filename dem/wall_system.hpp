@@ -11,8 +11,8 @@ class WallSystem {
  public:
   WallSystem() = default;
   /// `domain` bounds the parts of unbounded walls that matter. Throws std::invalid_argument for too many triangles.
-  /// `springs`: how many each contact keeps.
-  WallSystem(const std::vector<Wall>& walls, const Box& domain, int springs = 0);
+  /// `contacts` tell what contacts with walls remember, and whether there are liquid bridges.
+  WallSystem(const std::vector<Wall>& walls, const Box& domain, const ContactOptions& contacts = {});
 
   /// How far walls may move between two searches follows the rule for particles: radii [m] of the smallest and largest
   /// one, time step in s.
@@ -27,14 +27,28 @@ class WallSystem {
   void build_list(const Particles& particles, const NeighbourList& neighbours, Real allowances);
 
   /// What contacts remember goes from list to list by itself; around a re-sort of memory, pack it, then follow.
-  void pack_history(const Particles& particles) { history_.pack(list_, particles.count); }
+  void pack_history(const Particles& particles) {
+    history_.pack(list_, particles.count);
+    bridges_.pack(list_, particles.count);
+  }
   void reorder_history(const DeviceArray<std::int32_t>& order, Index count) {
     history_.reorder(order, count);
+    bridges_.reorder(order, count);
   }
-  void forget() { history_.clear(); }
-  void save(core::CheckpointWriter& file) const { history_.save(file); }
-  void load(const core::CheckpointReader& file) { history_.load(file); }
+  void forget() {
+    history_.clear();
+    bridges_.clear();
+  }
+  void save(core::CheckpointWriter& file) const {
+    history_.save(file);
+    bridges_.save(file);
+  }
+  void load(const core::CheckpointReader& file) {
+    history_.load(file);
+    bridges_.load(file);
+  }
 
+  /// Contacts, and liquid bridges where the options have them.
   void add_contacts(const ContactInput& input, const ContactOptions& options, const ContactResult& result);
   /// Reports of each wall since the last call.
   std::vector<WallReport> collect_reports();
@@ -60,6 +74,8 @@ class WallSystem {
   WallGeometry geometry_;
   WallList list_;
   WallHistory history_;
+  WallHistory bridges_;
+  Willett cohesion_;  // of no volume without bridges
   DeviceArray<WallReport> report_;
   DeviceArray<WallReport> report_scratch_;
   std::vector<HostMotion> motions_;
