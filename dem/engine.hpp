@@ -122,6 +122,8 @@ class Engine {
   /// `start_walls` starts their clock.
   void hold_walls() { walls_since_ = -1; }
   void start_walls() { walls_since_ = substeps_; }
+  /// Time since walls began to move [s]; negative before.
+  Real wall_time() const;
 
   /// Contact figures since the last call; stops the run if an overlap went beyond the limit or a particle broke.
   ContactReport collect_report();
@@ -160,8 +162,6 @@ class Engine {
   void allocate(std::size_t n);
   void reserve(std::size_t capacity);
   void begin_substep(core::Timers& timers);
-  /// Time since walls began to move [s]; negative before.
-  Real wall_time() const;
   void end_substep();
   void build_lists();
   SkinOptions skin() const;

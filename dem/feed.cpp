@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "core/random.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 /// Random places that a particle tries in an outer step before it waits for the next.
 constexpr std::uint32_t attempts = 200;
+/// Places that are looked at before the run: particles do not enter at this step.
+constexpr std::int64_t no_step = -1;
 
 /// Indices of the particles that reach into a box around `centre`, in the order of memory.
 Index find_near(const Particles& particles, const Domain& domain, const Vec3& centre, const Vec3& half,
@@ -41,6 +44,31 @@ Index find_near(const Particles& particles, const Domain& domain, const Vec3& ce
 Feed::Feed(const FeedSetup& setup) : setup_(setup) {
   if (const auto* distribution = std::get_if<SizeDistribution>(&setup_.diameter))
     sizes_.emplace(*distribution);
+}
+
+void Feed::keep_clear_of(const std::vector<Wall>& walls) {
+  constexpr std::uint32_t samples = 512;
+  obstacles_ = Obstacles(walls);
+  std::vector<Vec3> points;
+  for (std::uint32_t n = 0; n < samples; ++n) points.push_back(place(0, no_step, n));
+  obstacles_.choose_sides(points);
+}
+
+std::optional<std::int32_t> Feed::wall_without_room() {
+  constexpr std::uint32_t samples = 2000;
+  std::map<std::int32_t, int> in_the_way;
+  const Real radius = (1 - 1e-6) * largest_radius();
+  const Real duration = std::min(setup_.to - setup_.from, obstacles_.longest_period());
+  for (std::uint32_t n = 0; n < samples; ++n) {
+    // Multiples of the golden ratio spread times evenly, whatever their number.
+    if (duration > 0) obstacles_.move_to(setup_.from + std::fmod(std::numbers::phi * n, 1.0) * duration);
+    const auto overlap = obstacles_.deepest(place(largest_radius(), no_step, n), radius);
+    if (!overlap) return std::nullopt;
+    ++in_the_way[overlap->wall];
+  }
+  return std::max_element(in_the_way.begin(), in_the_way.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
 }
 
 Real Feed::smallest_radius() const {
@@ -109,17 +137,20 @@ Vec3 Feed::place(Real radius, std::int64_t step, std::uint32_t attempt) const {
   return disc.centre + (out * std::cos(angle)) * first + (out * std::sin(angle)) * second;
 }
 
-std::vector<ParticleSeed> Feed::draw(Real time, std::int64_t step, const std::vector<PlacedSphere>& near) {
+std::vector<ParticleSeed> Feed::draw(Real time, std::int64_t step, const std::vector<PlacedSphere>& near,
+                                     Real wall_time) {
+  obstacles_.move_to(wall_time);
   std::vector<ParticleSeed> entering;
   std::vector<PlacedSphere> taken = near;
   while (is_due(time)) {
     const Real diameter = next_diameter();
     const Real radius = 0.5 * diameter;
     const auto is_free = [&](const Vec3& x) {
-      return std::all_of(taken.begin(), taken.end(), [&](const PlacedSphere& other) {
-        const Real reach = radius + other.radius;
-        return norm_squared(setup_.domain.shortest(other.position - x)) >= reach * reach;
-      });
+      return obstacles_.clear(x, radius) &&
+             std::all_of(taken.begin(), taken.end(), [&](const PlacedSphere& other) {
+               const Real reach = radius + other.radius;
+               return norm_squared(setup_.domain.shortest(other.position - x)) >= reach * reach;
+             });
     };
     std::uint32_t attempt = 0;
     Vec3 x = place(radius, step, attempt);

@@ -10,6 +10,7 @@
 #include "core/checkpoint.hpp"
 #include "dem/engine.hpp"
 #include "dem/fill.hpp"
+#include "dem/obstacles.hpp"
 #include "dem/size_distribution.hpp"
 
 namespace pellicle::dem {
@@ -30,20 +31,27 @@ struct FeedSetup {
 };
 
 /// Decides who enters when and where. By the time t, the n-th particle is due when the sum over the first n of mass
-/// (or number) is at most rate × (t − from). It enters at a random place where it touches no other; if none is found
-/// it waits, and those after it, for the next outer step. Random numbers depend on seed, stream, outer step and number
+/// (or number) is at most rate × (t − from). It enters at a random place where it touches no other and no wall; if none is
+/// found it waits, and those after it, for the next outer step. Random numbers depend on seed, stream, outer step and number
 /// of the particle alone.
 class Feed {
  public:
   /// Throws std::invalid_argument for a distribution that makes no sense.
   explicit Feed(const FeedSetup& setup);
 
+  /// Keeps particles clear of these walls. Of each closed mesh the side that most of the region is on is room.
+  void keep_clear_of(const std::vector<Wall>& walls);
+  /// The wall that is in the way of the largest particle in all places and at all times that were tried, or in most of them
+  /// of several; none if one of them is free. Walls begin to move at t = 0.
+  std::optional<std::int32_t> wall_without_room();
+
   /// Whether a particle is due at `time` [s].
   bool is_due(Real time) const;
   /// A box that holds every particle of this feed where it enters [m].
   Box reach() const;
-  /// Those that enter at an outer step, among spheres that are near.
-  std::vector<ParticleSeed> draw(Real time, std::int64_t step, const std::vector<PlacedSphere>& near);
+  /// Those that enter at an outer step, among spheres that are near, `wall_time` seconds after walls began to move.
+  std::vector<ParticleSeed> draw(Real time, std::int64_t step, const std::vector<PlacedSphere>& near,
+                                 Real wall_time = -1);
 
   std::int64_t fed_particles() const { return fed_; }
   Real fed_mass() const { return mass_; }  ///< [kg]
@@ -68,6 +76,7 @@ class Feed {
 
   FeedSetup setup_;
   std::optional<SizeSampler> sizes_;
+  Obstacles obstacles_;
   std::int64_t fed_ = 0;
   Real amount_ = 0;  // fed, as the rate counts it
   Real mass_ = 0;

@@ -1,6 +1,8 @@
 #include "dem/obstacles.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace pellicle::dem {
 namespace {
@@ -63,24 +65,48 @@ std::vector<std::int32_t> Obstacles::closed_meshes() const {
 }
 
 void Obstacles::choose_sides(const FillRegion& region) {
-  constexpr int samples = 512;
+  constexpr std::size_t samples = 512;
   const Room room(region);
   const Box box = region_bounds(region);
+  std::vector<Vec3> points;
+  // Roberts' sequence fills the box evenly: multiples of powers of 1/1.2207, the root of x^4 = x + 1.
+  for (int n = 1; n <= 64 * static_cast<int>(samples) && points.size() < samples; ++n) {
+    const Vec3 share{0.8191725133961645 * n, 0.6710436067037893 * n, 0.5497004779019703 * n};
+    Vec3 x;
+    for (int a = 0; a < 3; ++a)
+      x[a] = box.min[a] + (share[a] - std::floor(share[a])) * (box.max[a] - box.min[a]);
+    if (room.holds(x, 0)) points.push_back(x);
+  }
+  choose_sides(points);
+}
+
+void Obstacles::choose_sides(const std::vector<Vec3>& points) {
   for (Mesh& mesh : meshes_) {
     if (!mesh.closed) continue;
-    int within = 0, all = 0;
-    // Roberts' sequence fills the box evenly: multiples of powers of 1/1.2207, the root of x^4 = x + 1.
-    for (int n = 1; n <= 64 * samples && all < samples; ++n) {
-      const Vec3 share{0.8191725133961645 * n, 0.6710436067037893 * n, 0.5497004779019703 * n};
-      Vec3 x;
-      for (int a = 0; a < 3; ++a)
-        x[a] = box.min[a] + (share[a] - std::floor(share[a])) * (box.max[a] - box.min[a]);
-      if (!room.holds(x, 0)) continue;
-      ++all;
-      within += encloses(mesh.grid.wall, x) ? 1 : 0;
-    }
-    mesh.room = 2 * within >= all ? Side::inside : Side::outside;
+    std::size_t within = 0;
+    for (const Vec3& x : points) within += encloses(mesh.grid.wall, x) ? 1 : 0;
+    mesh.room = 2 * within >= points.size() ? Side::inside : Side::outside;
   }
+}
+
+void Obstacles::move_to(Real time) {
+  for (std::size_t w = 0; w < geometry_.body.extent(0); ++w) {
+    const WallBody& body = geometry_.body(w);
+    geometry_.pose(w) =
+        time < 0 ? compute_pose_at_rest(body.motion) : compute_pose(body.motion, body.turning, time);
+  }
+}
+
+Real Obstacles::longest_period() const {
+  Real longest = 0;
+  for (std::size_t w = 0; w < geometry_.body.extent(0); ++w) {
+    const WallBody& body = geometry_.body(w);
+    const Real turns = norm(body.motion.spin) / (2 * std::numbers::pi);
+    const Real swings = norm_squared(body.motion.amplitude) > 0 ? body.motion.frequency : 0;
+    if (body.turning && turns > 0) longest = std::max(longest, 1 / turns);
+    if (swings > 0) longest = std::max(longest, 1 / swings);
+  }
+  return longest;
 }
 
 std::optional<ClosestPoint> Obstacles::closest_on(const Mesh& mesh, const Vec3& c, Real reach) const {

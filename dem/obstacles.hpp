@@ -1,4 +1,4 @@
-// Walls as particles that are being placed must not overlap them, on the host, before a run.
+// Walls as particles that are being placed must not overlap them, on the host, before and during a run.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace pellicle::dem {
 
-/// The walls of a case where they rest before they move. Planes and blocks are solid; the other shapes are thin, and a
+/// The walls of a case, at first where they rest before they move. Planes and blocks are solid; the other shapes are thin, and a
 /// sphere may be on either side of them, but for closed meshes of which one side was chosen.
 class Obstacles {
  public:
@@ -20,6 +20,13 @@ class Obstacles {
 
   /// Of each closed mesh the side that most of the region is on is room from now on, the other one is solid.
   void choose_sides(const FillRegion& region);
+  /// The same for a region that these points are spread over.
+  void choose_sides(const std::vector<Vec3>& points);
+
+  /// Brings walls to `time` seconds after they began to move; negative: to where they rest before. A copy shares them.
+  void move_to(Real time);
+  /// Time after which the slowest of the walls that move is where it was [s]; 0 if none moves.
+  Real longest_period() const;
 
   /// Where a sphere overlaps a wall.
   struct Overlap {

@@ -3,12 +3,16 @@
 
 #include <cmath>
 #include <cstring>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/checkpoint.hpp"
 #include "dem/feed.hpp"
+#include "dem/stl.hpp"
 #include "tests/core/temporary_folder.hpp"
 #include "tests/dem/bed.hpp"
+#include "tests/dem/meshes.hpp"
 
 namespace pellicle::dem {
 namespace {
@@ -149,6 +153,115 @@ TEST(Feed, WaitsUntilThereIsRoom) {
   for (int step = 2; step < 40; ++step) (void)feed.draw(0.1, step, {});
   EXPECT_EQ(feed.fed_particles(), static_cast<std::int64_t>(0.002 / mass_of(0.002)));
   EXPECT_EQ(feed.waiting(0.1), 0);
+}
+
+Wall block_wall(const Vec3& min, const Vec3& max) {
+  Wall wall;
+  wall.boxes = {{min, max}};
+  return wall;
+}
+
+/// Where the particles of some outer steps enter, as long as some find a place.
+std::vector<ParticleSeed> places_of(const FeedSetup& setup, const std::vector<Wall>& walls, Real wall_time) {
+  Feed feed(setup);
+  feed.keep_clear_of(walls);
+  EXPECT_FALSE(feed.wall_without_room());
+  std::vector<ParticleSeed> all;
+  for (int step = 0; step < 20; ++step) {
+    const auto some = feed.draw(1, step, {}, wall_time);  // nobody is there any more
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  EXPECT_GT(all.size(), 100U);
+  return all;
+}
+
+TEST(Feed, KeepsClearOfWalls) {
+  // The plate at z = 35 mm from 2 to 18 mm, of which a block takes x < 8 mm, and a tube around (14, 10) mm of 3 mm cuts
+  // through the rest: spheres of 2 mm have their centres at 9 mm or more, and 1 mm from the tube on either side.
+  FeedSetup setup = plate_feed(tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain);
+  setup.rate = 100;
+  Wall tube;
+  tube.revolved = {{{0.014, 0.01, 0}, {0, 0, 1}, 0.003, 0, 0.003, 0.04}};
+  int within = 0, without = 0;
+  for (const ParticleSeed& p : places_of(setup, {block_wall({0, 0, 0.03}, {0.008, 0.02, 0.04}), tube}, 0)) {
+    ASSERT_GE(p.position.x, 0.009 - 1e-8);
+    const Real out = std::hypot(p.position.x - 0.014, p.position.y - 0.01);
+    ASSERT_GE(std::abs(out - 0.003), 0.001 - 1e-8);
+    ++(out < 0.003 ? within : without);
+  }
+  EXPECT_GT(within, 5);
+  EXPECT_GT(without, 50);
+}
+
+TEST(Feed, KeepsClearOfWallsThatMoveAsTheyStand) {
+  // A block that swings from x < 8 mm at rest to x < 12 mm a quarter of a period later, to x < 4 mm at three quarters.
+  FeedSetup setup = plate_feed(tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain);
+  setup.rate = 100;
+  Wall piston = block_wall({-0.02, 0, 0.03}, {0.008, 0.02, 0.04});
+  piston.motion.amplitude = {0.004, 0, 0};
+  piston.motion.frequency = 10;
+  for (const auto& [time, face] : {std::pair{-1.0, 0.008}, {0.025, 0.012}, {0.075, 0.004}}) {
+    Real nearest = 1;
+    for (const ParticleSeed& p : places_of(setup, {piston}, time))
+      nearest = std::min(nearest, p.position.x - 0.001);
+    EXPECT_GE(nearest, face - 1e-8);
+    EXPECT_LT(nearest, face + 0.0005);  // one of more than 100 on at most 14 mm
+  }
+  // While it covers the whole plate nobody enters, but it leaves; one that does not swing far enough is refused.
+  piston.boxes[0].max.x = 0.0185;
+  Feed feed(setup);
+  feed.keep_clear_of({piston});
+  EXPECT_FALSE(feed.wall_without_room());
+  EXPECT_TRUE(feed.draw(1, 0, {}, 0).empty());
+  EXPECT_FALSE(feed.draw(1, 1, {}, 0.075).empty());
+  piston.motion.amplitude.x = 0.002;
+  feed.keep_clear_of({piston});
+  EXPECT_EQ(feed.wall_without_room(), 0);
+  // Turned by half about the middle of the box, it leaves the plate too, if particles are fed for so long.
+  piston.motion = {};
+  piston.motion.spin = {0, 0, M_PI};
+  piston.motion.through = {0.0205, 0.01, 0};
+  feed.keep_clear_of({piston});
+  EXPECT_FALSE(feed.wall_without_room());
+  setup.to = 0.001;
+  Feed shorter(setup);
+  shorter.keep_clear_of({piston});
+  EXPECT_EQ(shorter.wall_without_room(), 0);
+}
+
+TEST(Feed, StaysOnItsSideOfAClosedMesh) {
+  // Nine tenths of the plate are within the mesh: nobody enters in the rest, nor in the walls.
+  FeedSetup setup = plate_feed(tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain);
+  setup.rate = 100;
+  Wall vessel;
+  MeshReport report;
+  vessel.mesh = std::make_shared<TriangleMesh>(parse_stl(
+      tests::binary_stl(tests::box_triangles({0.0036, 0.001, 0.02}, {0.019, 0.019, 0.039})), 1, report));
+  ASSERT_TRUE(vessel.mesh->closed);
+  for (const ParticleSeed& p : places_of(setup, {vessel}, 0)) ASSERT_GE(p.position.x, 0.0046 - 1e-8);
+  // The other way round.
+  vessel.mesh = std::make_shared<TriangleMesh>(parse_stl(
+      tests::binary_stl(tests::box_triangles({0.0036, 0.001, 0.02}, {0.009, 0.019, 0.039})), 1, report));
+  for (const ParticleSeed& p : places_of(setup, {vessel}, 0))
+    ASSERT_TRUE(p.position.x <= 0.0026 + 1e-8 || p.position.x >= 0.010 - 1e-8) << p.position.x;
+}
+
+TEST(Feed, SaysWhichWallLeavesItNoRoom) {
+  FeedSetup setup = plate_feed(tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain);
+  setup.diameter = UniformSizes{0.001, 0.003};
+  const auto in_the_way = [&](const std::vector<Wall>& walls) {
+    Feed feed(setup);
+    feed.keep_clear_of(walls);
+    return feed.wall_without_room();
+  };
+  const Wall floor = PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 0};
+  EXPECT_FALSE(in_the_way({floor}));
+  // Spheres of 3 mm stay within the plate with their centres at up to 16.5 mm: 1.5 mm from a block that ends at 15 mm.
+  EXPECT_FALSE(in_the_way({floor, block_wall({0, 0, 0.03}, {0.0148, 0.02, 0.04})}));
+  EXPECT_EQ(in_the_way({floor, block_wall({0, 0, 0.03}, {0.0152, 0.02, 0.04})}), 1);
+  // Behind a plane, and in the middle of one.
+  EXPECT_EQ(in_the_way({PlaneWall{"lid", {0, 0, 0.03}, {0, 0, -1}, {}, 0}, floor}), 0);
+  EXPECT_EQ(in_the_way({PlaneWall{"lid", {0, 0, 0.035}, {0, 0, 1}, {}, 0}, floor}), 0);
 }
 
 TEST(Feed, AddedParticlesFlyLikeOthers) {

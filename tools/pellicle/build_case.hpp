@@ -17,8 +17,9 @@ dem::EngineSetup make_engine_setup(const CaseSpec& spec, Real particle_step);
 /// can move starts inside one of the walls, which are those of the case.
 std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec, const std::vector<dem::Wall>& walls);
 
-/// The feeds of the case, in the order of the file.
-std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::Domain& domain);
+/// The feeds of the case, in the order of the file. Throws InputError where walls, which are those of the case, leave no
+/// room for the largest particle.
+std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::EngineSetup& setup);
 
 coupling::CouplingOptions make_coupling_options(const CaseSpec& spec);
 

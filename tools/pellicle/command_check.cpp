@@ -186,6 +186,7 @@ void try_to_build(const CaseSpec& spec) {
     if (!spec.particles.empty()) {
       dem::Engine particles(make_engine_setup(spec, spec.time.particle_step));
       particles.set_particles(make_particles(spec, particles.setup().walls));
+      (void)make_feeds(spec, particles.setup());
       walls = particles.setup().walls;
     } else {
       walls = make_walls(spec);

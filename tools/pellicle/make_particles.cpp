@@ -165,7 +165,8 @@ std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec, const std::v
   return particles;
 }
 
-std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::Domain& domain) {
+std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::EngineSetup& engine) {
+  core::InputProblems problems;
   std::vector<dem::Feed> feeds;
   for (std::size_t i = 0; i < spec.particles.size(); ++i) {
     const PopulationSpec& population = spec.particles[i];
@@ -174,7 +175,7 @@ std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::Domain& domai
     dem::FeedSetup setup;
     if (feed.box) setup.region = *feed.box;
     if (feed.disc) setup.region = *feed.disc;
-    setup.domain = domain;
+    setup.domain = engine.domain;
     setup.from = feed.from;
     setup.to = feed.to;
     setup.by_count = feed.rate.has_value();
@@ -186,7 +187,16 @@ std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::Domain& domai
     setup.seed = spec.seed;
     setup.stream = static_cast<std::int64_t>(i);
     feeds.emplace_back(setup);
+    feeds.back().keep_clear_of(engine.walls);
+    if (const auto wall = feeds.back().wall_without_room()) {
+      problems.add(feed.where,
+                   fmt::format("the wall {} leaves no room for a particle of {:.4g} m, the largest of this "
+                               "feed; a {} where spheres of that size are clear of walls",
+                               engine.walls[static_cast<std::size_t>(*wall)].name,
+                               2 * feeds.back().largest_radius(), feed.box ? "box" : "disc"));
+    }
   }
+  problems.throw_if_any();
   return feeds;
 }
 

@@ -38,7 +38,7 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
             spec.particles.empty() ? 0 : spec.time.longest_settling()) {
   if (!spec_.particles.empty()) {
     particles_.emplace(make_engine_setup(spec_, time_.particle_step()));
-    feeds_ = make_feeds(spec_, particles_->setup().domain);
+    feeds_ = make_feeds(spec_, particles_->setup());
   }
   if (spec_.gas) {
     gas_.emplace(make_gas_solver(spec_, particles_ ? particles_->setup().walls : make_walls(spec_)));
@@ -201,8 +201,8 @@ void Simulation::feed_particles() {
   const core::Timers::Scope scope(timers_, Part::neighbours);
   for (dem::Feed& feed : feeds_) {
     if (!feed.is_due(time_.time())) continue;
-    particles_->add_particles(
-        feed.draw(time_.time(), time_.step(), dem::spheres_near(*particles_, feed.reach())));
+    particles_->add_particles(feed.draw(
+        time_.time(), time_.step(), dem::spheres_near(*particles_, feed.reach()), particles_->wall_time()));
   }
 }
 
