@@ -62,6 +62,8 @@ class Reader : public Keys {
   void exactly_one(const std::vector<std::string_view>& names) override {
     const auto there = given_of(names);
     if (there.size() == 1) return;
+    // What is wrong with each of several may not matter once one of them is left.
+    for (const auto& name : there) document_.problems.forget(path_of(name));
     report_alternatives(names, there);
   }
   /// To be called when all keys of the section have been described.
@@ -368,6 +370,19 @@ class Reader : public Keys {
 };
 
 }  // namespace
+
+void InputProblems::add(const std::string& where, const std::string& what) {
+  messages_.push_back(where + ": " + what);
+}
+
+void InputProblems::forget(const std::string& path) {
+  std::erase_if(messages_, [&](const std::string& message) {
+    const auto begin = message.find(": ") + 2;  // after the place
+    if (message.compare(begin, path.size(), path) != 0) return false;
+    const char next = message[begin + path.size()];
+    return next == ':' || next == '.';
+  });
+}
 
 void InputProblems::throw_if_any() const {
   if (messages_.empty()) return;

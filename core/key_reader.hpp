@@ -14,7 +14,10 @@ namespace pellicle::core {
 /// What is wrong with an input, in the order found; each is `file:line: key.path: what is wrong; what is allowed`.
 class InputProblems {
  public:
-  void add(const std::string& where, const std::string& what) { messages_.push_back(where + ": " + what); }
+  /// `where` is the place, then the path of the key.
+  void add(const std::string& where, const std::string& what);
+  /// Drops what was said of the key of a path and of the keys below it.
+  void forget(const std::string& path);
   const std::vector<std::string>& messages() const { return messages_; }
   bool empty() const { return messages_.empty(); }
   /// Throws InputError with all messages, one a line, if there are any.

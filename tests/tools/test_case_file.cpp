@@ -340,12 +340,12 @@ TEST(CaseErrors, Populations) {
             "--set: particles.3.diameter: particles of a list have no distribution; a length");
   EXPECT_EQ(bed_errors("particles.0.count=10000"),
             at("fill: {box: {min: [0, 0, \"10 mm\"]") +
-                ": particles.0.fill: 10000 particles do not fit: they would take 2.09 of the region's "
-                "volume; at most 0.524 with pattern lattice");
+                ": particles.0.fill: 10000 particles do not fit: they would take 2.09 times the region's "
+                "volume; at most 52.4 % with pattern lattice");
   EXPECT_EQ(bed_errors("particles.2.fill.solids_fraction=0.65"),
             at("\"61 mm\"") +
-                ": particles.2.fill: 1117 particles do not fit: they would take 0.65 of the region's volume; "
-                "at most 0.6 with pattern random");
+                ": particles.2.fill: 1117 particles do not fit: they would take 65 % of the region's volume; "
+                "at most 60 % with pattern random");
   EXPECT_EQ(bed_errors("particles.1.total_mass=1e-9"),
             at("total_mass") +
                 ": particles.1: it comes to no particle at all; a mass or solids fraction of at least one "
@@ -590,7 +590,7 @@ TEST(CaseParticles, PopulationsOfOneRegionMix) {
   const std::string refused = errors(powders_case, {"particles=[" + half + ", " + half + ", " + half + "]"});
   EXPECT_TRUE(refused.starts_with(
       "--set: particles.0.fill: 1611 particles do not fit: with those of the same region they "
-      "would take 0.75 of the region's volume; at most 0.6 with pattern random"))
+      "would take 75 % of the region's volume; at most 60 % with pattern random"))
       << refused;
 }
 
@@ -616,6 +616,14 @@ TEST(CaseErrors, Feeds) {
   begins("particles.6.feed.to=5 ms",
          "--set: particles.6.feed.to: from 0.01 to 0.005 s is no time; later than from");
   begins("particles.6.diameter=", "c.yaml:24: particles.6.diameter: missing; a feed needs a length");
+}
+
+TEST(CaseErrors, OnlyOneMessageForSeveralOfWhichOneIsAllowed) {
+  const std::string said = errors(powders_case, {"particles.6.feed.box.min=[0, 0, 0]"});
+  EXPECT_TRUE(
+      said.starts_with("c.yaml:25: particles.6.feed: box and disc are given; exactly one of box, disc"))
+      << said;
+  EXPECT_EQ(said.find('\n'), std::string::npos) << said;
 }
 
 TEST(CaseErrors, RoundRegions) {

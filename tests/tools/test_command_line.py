@@ -49,7 +49,7 @@ BAD_INPUT = [
     ("negative diameter", ('diameter: "5 mm"', 'diameter: "-5 mm"'),
      '14: particles.0.diameter: "-5 mm" is out of range; a length greater than 0'),
     ("more volume than room", ("count: 2", "count: 2000"),
-     "15: particles.0.fill: 2000 particles do not fit: they would take 1.05 of the region's volume; at most 0.6 with "
+     "15: particles.0.fill: 2000 particles do not fit: they would take 1.05 times the region's volume; at most 60 % with "
      "pattern random"),
     ("more particles than random placing can fit", ("count: 2", "count: 1140"), r"15: particles.0.fill: .* do not fit"),
     ("step over the bound", ('particle_step: "1e-5 s"', 'particle_step: "1e-3 s"'),

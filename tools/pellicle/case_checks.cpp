@@ -228,13 +228,15 @@ class Checker {
     if (fraction > limit) {
       problems_.add(
           fill.where,
-          fmt::format("{} particles do not fit: {} would take {:.3g} of the region's volume; at most {:.3g} "
+          fmt::format("{} particles do not fit: {} would take {} the region's volume; at most {:.3g} % "
                       "with pattern {}",
                       count,
                       volume > 1.0001 * static_cast<Real>(count) * mean_particle_volume(population)
                           ? "with those of the same region they"
                           : "they",
-                      fraction, limit, fill_patterns[static_cast<std::size_t>(fill.pattern)].name));
+                      fraction < 1 ? fmt::format("{:.3g} % of", 100 * fraction)
+                                   : fmt::format("{:.3g} times", fraction),
+                      100 * limit, fill_patterns[static_cast<std::size_t>(fill.pattern)].name));
     }
   }
 
