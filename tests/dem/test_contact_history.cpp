@@ -65,6 +65,32 @@ TEST(ContactHistory, LoadsWithTheMindlinStiffnessUpToTheLimit) {
   EXPECT_NEAR(-sliding.tangential / sliding.normal, 0.3, 1e-7);
 }
 
+TEST(ContactHistory, TurnsWithAWallAndAParticleThatSpin) {
+  // A disc and a heavy sphere on its axis turn alike about it, while the sphere slides off at u along x, by 0.5 rad in all.
+  // Seen from the material of both, that is where the contact began, turned, to where it is: ξ = (u t, 0, 0) solves
+  // dξ/dt = slip + ω × ξ, slip = (u, −ω u t, 0). Nothing slips: µ is 10. R* and G* are those of a rigid wall.
+  const HeavyPair pair;
+  EngineSetup setup = pair.setup;
+  setup.pairs[1].sliding_friction = 10;
+  Wall disc;
+  disc.material = 1;
+  disc.revolved = {{{0.05, 0.05, 0.05}, {0, 0, 1}, 0, 0, 0.01, 0}};
+  disc.motion.spin = {0, 0, 500};
+  disc.motion.through = {0.05, 0.05, 0};
+  setup.walls = {disc};
+  const Real radius = 1.5e-3, overlap = 1e-5, speed = 1e-3;
+  Engine engine(setup);
+  engine.set_particles(
+      {{{0.05, 0.05, 0.05 + radius - overlap}, {speed, 0, 0}, {0, 0, 500}, radius, 0, false}});
+  advance(engine, 1000);
+  const auto sphere = grains(engine.particles())[0];
+  const Real stiffness = 8 * (16e6 / 7) * std::sqrt(radius * overlap);
+  const Real expected = stiffness * 999.5e-6 * speed;
+  EXPECT_NEAR(sphere.mass * sphere.acceleration.x, -expected, 1e-3 * expected);
+  // Half a step of the slip, of ω u t, is not in the balance of both.
+  EXPECT_NEAR(sphere.mass * sphere.acceleration.y, 0, 1e-3 * expected);
+}
+
 TEST(ContactHistory, BeginsAnewAfterAGap) {
   const HeavyPair pair;
   Engine engine(pair.setup);

@@ -153,6 +153,16 @@ TEST(Engine, BooksEveryImpulse) {
   }
 }
 
+TEST(Engine, PotentialEnergyIsThatOfTheMovingParticles) {
+  auto setup = tests::glass_setup({1, 1, 1}, 1e-4);
+  setup.gravity = {1, 0, -10};
+  Engine engine(setup);
+  engine.set_particles({{{0.3, 0.5, 0.6}, {}, {}, 0.01, 0, false}, {{0.7, 0.5, 0.5}, {}, {}, 0.01, 0, true}});
+  // −m g·x = −m (1 × 0.3 − 10 × 0.6).
+  const Real mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6;
+  EXPECT_NEAR(engine.compute_totals().potential_energy, 5.7 * mass, 1e-14 * mass);
+}
+
 TEST(Engine, GravityImpulseIsThatOfTheParticlesPresent) {
   auto setup = tests::glass_setup({1, 1, 1}, 1e-4);
   setup.gravity = {0, 0, -10};

@@ -138,6 +138,30 @@ TEST(Feed, EntersInsideItsRegionAndTouchesNobody) {
   }
 }
 
+TEST(Feed, SpreadsParticlesEvenlyOverADisc) {
+  // One at a time, nobody near: half of the centres lie within 1/√2 of the largest distance, half on each side.
+  FeedSetup setup = plate_feed(tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain);
+  setup.region = DiscRegion{{0.01, 0.01, 0.03}, {0, 0, 1}, 0.008};
+  setup.by_count = true;
+  setup.rate = 1;
+  setup.to = 1e5;
+  Feed feed(setup);
+  const int count = 4000;
+  int within = 0, right = 0, behind = 0;
+  for (int step = 1; step <= count; ++step) {
+    const auto one = feed.draw(step, step, {});
+    ASSERT_EQ(one.size(), 1U);
+    const Vec3 out = one[0].position - Vec3{0.01, 0.01, 0.03};
+    within += std::hypot(out.x, out.y) < 0.007 * std::sqrt(0.5) ? 1 : 0;
+    right += out.x > 0 ? 1 : 0;
+    behind += out.y > 0 ? 1 : 0;
+  }
+  // Four standard deviations of a binomial number: 4 √(4000/4) = 126.
+  EXPECT_NEAR(within, count / 2, 126);
+  EXPECT_NEAR(right, count / 2, 126);
+  EXPECT_NEAR(behind, count / 2, 126);
+}
+
 TEST(Feed, WaitsUntilThereIsRoom) {
   const Domain domain = tests::glass_setup({0.02, 0.02, 0.04}, 1e-5).domain;
   Feed feed(plate_feed(domain));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dem/wall_candidates.hpp"
+#include "dem/wall_history.hpp"
 #include "dem/wall_system.hpp"
 #include "tests/dem/bed.hpp"
 #include "tests/dem/meshes.hpp"
@@ -105,6 +106,78 @@ TEST(WallContacts, OneOnAConvexEdgeTwoInACorner) {
   EXPECT_NEAR(three[2].at.distance, 0.08, 1e-15);
 }
 
+TEST(WallContacts, FacetsThatMeetAtLessThanTwentyDegreesAreOne) {
+  // A valley along y of two slopes, each tilted by half the angle; a sphere over its middle is as near to both.
+  for (const Real degrees : {10.0, 19.0, 21.0, 45.0}) {
+    const Real rise = std::tan(0.5 * degrees * M_PI / 180);
+    const Vec3 a{0, -1, 0}, b{0, 1, 0}, left_a{-1, -1, rise}, left_b{-1, 1, rise}, right_a{1, -1, rise},
+        right_b{1, 1, rise};
+    const auto valley =
+        mesh_wall({{a, b, left_b}, {a, left_b, left_a}, {a, right_b, b}, {a, right_a, right_b}});
+    EXPECT_EQ(contacts_of({valley}, {0, 0.1, 0.09}, 0.1).count(), degrees < 20 ? 1 : 2) << degrees;
+    // The two slopes as walls of their own are two contacts at any angle.
+    const auto left = mesh_wall({{a, b, left_b}, {a, left_b, left_a}});
+    const auto right = mesh_wall({{a, right_b, b}, {a, right_a, right_b}});
+    EXPECT_EQ(contacts_of({left, right}, {0, 0.1, 0.09}, 0.1).count(), 2) << degrees;
+  }
+}
+
+TEST(WallMemory, KnowsAContactByItsWallAndDirection) {
+  const auto tilted = [](Real degrees) {
+    return Vec3{std::sin(degrees * M_PI / 180), 0, -std::cos(degrees * M_PI / 180)};
+  };
+  WallMemory memory;
+  EXPECT_EQ(memory.find(0, tilted(0), 0), -1);
+  memory.count = 3;
+  memory.wall[0] = memory.wall[1] = 4;
+  memory.wall[2] = 5;
+  memory.towards[0] = tilted(0);
+  memory.towards[1] = tilted(40);
+  memory.towards[2] = tilted(0);
+  EXPECT_EQ(memory.find(4, tilted(0), 0), 0);
+  EXPECT_EQ(memory.find(5, tilted(0), 0), 2);
+  EXPECT_EQ(memory.find(6, tilted(0), 0), -1);
+  EXPECT_EQ(memory.find(WallMemory::any_wall, tilted(41), 0), 1);
+  // The nearer of two, unless it is taken; none further away than 25° (cosine 0.9: 25.8°).
+  EXPECT_EQ(memory.find(4, tilted(19), 0), 0);
+  EXPECT_EQ(memory.find(4, tilted(21), 0), 1);
+  EXPECT_EQ(memory.find(4, tilted(19), 0b1), 1);
+  EXPECT_EQ(memory.find(4, tilted(19), 0b11), -1);
+  EXPECT_EQ(memory.find(4, tilted(-25), 0), 0);
+  EXPECT_EQ(memory.find(4, tilted(-27), 0), -1);
+  EXPECT_EQ(memory.find(5, tilted(90), 0), -1);
+}
+
+TEST(WallContacts, RollingIsAgainstTheSpinOfTheWall) {
+  // At the bottom of a drum that turns about y, its contact point as fast as the drum: where the sphere turns as the drum
+  // does, nothing rolls; at rest it is carried along by µ_r R F_n, F_n of a rigid wall (4/3) E* √R δ^(3/2).
+  const Real radius = 0.002, overlap = 1e-5, drum = 0.05, rate = 30;
+  auto setup = tests::glass_setup({0.2, 0.2, 0.2}, 1e-7, 1, 0.3, 0.1);
+  Wall wall;
+  wall.material = 1;
+  wall.revolved = {{{0.1, 0, 0.1}, {0, 1, 0}, drum, 0, drum, 0.2}};
+  wall.motion.spin = {0, rate, 0};
+  wall.motion.through = {0.1, 0, 0.1};
+  setup.walls = {wall};
+  for (const bool turns : {true, false}) {
+    Engine engine(setup);
+    // ω × (0, 0, −drum) = (−rate drum, 0, 0); the sphere's own spin adds ω × (0, 0, −(R − δ)) there.
+    const Vec3 spin{0, turns ? rate : 0, 0};
+    const Real speed = -rate * drum + spin.y * (radius - overlap);
+    engine.set_particles(
+        {{{0.1, 0.1, 0.1 - drum + radius - overlap}, {speed, 0, 0}, spin, radius, 0, false}});
+    tests::advance(engine, 1);
+    const auto sphere = tests::grains(engine.particles())[0];
+    const Real force = 4.0 / 3 * tests::glass_wall_modulus * std::sqrt(radius) * std::pow(overlap, 1.5);
+    const Real inertia = 0.4 * tests::glass_mass(radius) * radius * radius;
+    const Real carried = 0.1 * radius * force / inertia;  // [rad/s²]
+    // Single precision of the acceleration; friction, of the contact point's speed by rounding alone, is far smaller.
+    EXPECT_NEAR(sphere.angular_acceleration.y, turns ? 0 : carried, 1e-6 * carried);
+    EXPECT_NEAR(sphere.angular_acceleration.x, 0, 1e-6 * carried);
+    EXPECT_NEAR(sphere.angular_acceleration.z, 0, 1e-6 * carried);
+  }
+}
+
 TEST(WallContacts, SeamsOfDifferentWallsAreShadowedToo) {
   // A tube of radius 1 that stands on a disc of the same radius, and goes on as a cone.
   Wall tube, disc, cone, plane;
@@ -144,14 +217,14 @@ TEST(WallMotion, PosesInClosedForm) {
   WallMotion motion;
   motion.spin = {0, 0, 2};
   motion.through = {1, 0, 0};
-  motion.amplitude = {0, 0, 0.1};
+  motion.amplitude = {0.03, 0, 0.1};
   motion.frequency = 5;
   motion.phase = 0.3;
   const Real time = M_PI / 4;  // a quarter turn
   const WallPose pose = compute_pose(motion, true, time);
   const Real height = 0.1 * std::sin(10 * M_PI * time + 0.3);
   const Vec3 moved = pose.to_world({3, 0, 7});
-  EXPECT_LT(norm(moved - Vec3{1, 2, 7 + height}), 1e-14);
+  EXPECT_LT(norm(moved - Vec3{1 + 0.3 * height, 2, 7 + height}), 1e-14);
   EXPECT_LT(norm(pose.to_wall(moved) - Vec3{3, 0, 7}), 1e-14);
   // Its velocity is the difference quotient of its path, to second order.
   const Real h = 1e-5;
@@ -163,6 +236,37 @@ TEST(WallMotion, PosesInClosedForm) {
   motion.surface_velocity = {3, 4, 5};
   EXPECT_LT(norm(compute_pose(motion, false, 1).velocity_at({0, 0, 0}, {0, 0, 1}) - Vec3{3, 4, 0}), 1e-15);
   EXPECT_EQ(compute_pose_at_rest(motion).velocity_at({0, 0, 0}, {0, 0, 1}), (Vec3{0, 0, 0}));
+}
+
+TEST(WallMotion, AListHoldsUntilAWallHasMovedByItsAllowance) {
+  // A floor that swings by 1 mm at 50.1 Hz, from the phase 0.4 on, and has waited there. Its allowance: the way at top speed
+  // in ten steps of 0.1 ms, 0.3148 mm.
+  Wall floor = PlaneWall{"floor", {0, 0, 0}, {0, 0, 1}, {}, 0};
+  floor.motion.amplitude = {0, 0, 1e-3};
+  floor.motion.frequency = 50.1;
+  floor.motion.phase = 0.4;
+  WallSystem walls({floor}, {{0, 0, 0}, {1, 1, 1}});
+  SkinOptions skin;
+  skin.steps = 10;
+  skin.smallest_fraction = 0;
+  skin.largest_fraction = 1;
+  walls.set_allowances(skin, 1e-4, 1, 1);
+  const Real allowance = 10 * 1e-4 * 2 * M_PI * 50.1 * 1e-3;
+  const auto height = [](Real time) { return 1e-3 * std::sin(2 * M_PI * 50.1 * std::max(time, 0.0) + 0.4); };
+  int outdated = 0;
+  for (const Real built : {-1.0, 0.0, 0.013}) {
+    walls.move_to(built);
+    walls.build_list(Particles{}, NeighbourList{}, 1);
+    EXPECT_FALSE(walls.list_outdated());
+    for (int k = 0; k < 200; ++k) {
+      const Real time = std::max(built, 0.0) + 1e-4 * k;
+      walls.move_to(time);
+      const bool beyond = std::abs(height(time) - height(built)) > allowance;
+      EXPECT_EQ(walls.list_outdated(), beyond) << "built at " << built << ", at " << time;
+      outdated += beyond ? 1 : 0;
+    }
+  }
+  EXPECT_GT(outdated, 100);
 }
 
 TEST(WallMotion, OnlyShapesThatChangeByItTurn) {

@@ -115,6 +115,16 @@ class Feed(unittest.TestCase):
         for name, value in one.items():
             self.assertTrue(np.array_equal(value, other[name]), name)
 
+    def test_is_refused_where_walls_leave_no_room(self):
+        lid = '  - {name: lid, block: {min: [0, 0, "%s"], max: ["20 mm", "20 mm", "60 mm"]}, material: wall}\noutput:'
+        for height, refused in (("50 mm", True), ("57 mm", False)):
+            self.case.write_text(STREAM.replace("output:", lid % height, 1), encoding="utf-8")
+            check = subprocess.run([PROGRAM, "check", str(self.case)], capture_output=True, text=True, check=False)
+            self.assertEqual(check.returncode, 2 if refused else 0, check.stderr)
+            if refused:
+                self.assertIn("particles.0.feed: the wall lid leaves no room for a particle of 0.003 m, the largest of "
+                              "this feed; a disc where spheres of that size are clear of walls", check.stderr)
+
     def test_settles_until_quiet(self):
         for at_most in ("1 s", "20 ms"):
             self.case.write_text(BED % at_most, encoding="utf-8")
