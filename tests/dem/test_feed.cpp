@@ -146,7 +146,7 @@ TEST(Feed, SpreadsParticlesEvenlyOverADisc) {
   setup.rate = 1;
   setup.to = 1e5;
   Feed feed(setup);
-  const int count = 4000;
+  const int count = 4000, half = count / 2;
   int within = 0, right = 0, behind = 0;
   for (int step = 1; step <= count; ++step) {
     const auto one = feed.draw(step, step, {});
@@ -157,9 +157,9 @@ TEST(Feed, SpreadsParticlesEvenlyOverADisc) {
     behind += out.y > 0 ? 1 : 0;
   }
   // Four standard deviations of a binomial number: 4 √(4000/4) = 126.
-  EXPECT_NEAR(within, count / 2, 126);
-  EXPECT_NEAR(right, count / 2, 126);
-  EXPECT_NEAR(behind, count / 2, 126);
+  EXPECT_NEAR(within, half, 126);
+  EXPECT_NEAR(right, half, 126);
+  EXPECT_NEAR(behind, half, 126);
 }
 
 TEST(Feed, WaitsUntilThereIsRoom) {
@@ -343,15 +343,16 @@ TEST(Feed, WhoeverIsThereDoesNotNoticeTheOthers) {
   tests::add_box_walls(setup);
   setup.later = {{0}, 0.001, 0.001, 5000};
   std::vector<ParticleSeed> seeds;
+  seeds.reserve(60);
   for (int p = 0; p < 60; ++p) {
-    seeds.push_back(
-        {Vec3{0.0035 + 0.003 * (p % 5), 0.0035 + 0.003 * ((p / 5) % 4), 0.0012 + 0.0021 * (p / 20)} +
-             1e-4 * tests::random_vector(5, p),
-         {},
-         {},
-         0.001,
-         0,
-         false});
+    const int row = p / 5 % 4, layer = p / 20;
+    seeds.push_back({Vec3{0.0035 + 0.003 * (p % 5), 0.0035 + 0.003 * row, 0.0012 + 0.0021 * layer} +
+                         1e-4 * tests::random_vector(5, p),
+                     {},
+                     {},
+                     0.001,
+                     0,
+                     false});
   }
   Engine alone(setup), fed(setup);
   alone.set_particles(seeds);
@@ -361,8 +362,11 @@ TEST(Feed, WhoeverIsThereDoesNotNoticeTheOthers) {
     // 20 resting far above, out of reach for as long as this goes on.
     if (step % 20 == 0) {
       std::vector<ParticleSeed> more;
+      more.reserve(64);
+      const int layer = step / 20;
       for (int p = 0; p < 64; ++p) {
-        more.push_back({{0.0015 + 0.0021 * (p % 8), 0.0015 + 0.0021 * (p / 8), 0.1 + 0.003 * (step / 20)},
+        const int row = p / 8;
+        more.push_back({{0.0015 + 0.0021 * (p % 8), 0.0015 + 0.0021 * row, 0.1 + 0.003 * layer},
                         {},
                         {},
                         0.001,

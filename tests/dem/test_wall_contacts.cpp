@@ -200,6 +200,7 @@ TEST(WallContacts, AMeshOfManyTrianglesIsOneWall) {
   // A round plate of 64 triangles that meet in the middle: more than are compared.
   std::vector<TriangleShape> fan;
   const auto rim = [](int i) { return Vec3{std::cos(2 * M_PI * i / 64), std::sin(2 * M_PI * i / 64), 0}; };
+  fan.reserve(64);
   for (int i = 0; i < 64; ++i) fan.push_back({{0, 0, 0}, rim(i), rim(i + 1)});
   for (const Vec3& x : {Vec3{0, 0, 0.08}, Vec3{0.003, 0.001, 0.08}, Vec3{0.3, 0, 0.08}}) {
     const WallCandidates found = contacts_of({mesh_wall(fan)}, x, 0.1);

@@ -289,6 +289,7 @@ TEST(Walls, AHeapWeighsOnItsWalls) {
   std::vector<ParticleSeed> seeds;
   const auto centres =
       tests::scatter({{-0.007, -0.007, 0.006}, {0.007, 0.007, 0.046}}, std::vector<Real>(150, 0.001), 0, 65);
+  seeds.reserve(centres.size());
   for (const Vec3& x : centres) seeds.push_back({x, {0, 0, -0.3}, {}, 0.001, 0, false});
   Engine engine(setup);
   engine.set_particles(seeds);
