@@ -19,7 +19,7 @@ std::vector<dem::ParticleSeed> make_particles(const CaseSpec& spec, const std::v
 
 /// The feeds of the case, in the order of the file. Throws InputError where walls, which are those of the case, leave no
 /// room for the largest particle.
-std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::EngineSetup& setup);
+std::vector<dem::Feed> make_feeds(const CaseSpec& spec, const dem::EngineSetup& engine);
 
 coupling::CouplingOptions make_coupling_options(const CaseSpec& spec);
 
