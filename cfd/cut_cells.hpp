@@ -21,7 +21,7 @@ struct SurfacePiece {
   Vec3 point;                ///< its middle [m]
   Real area = 0;             ///< [m2]
   Real distance = 0;         ///< from the middle of the cell's gas to the surface [m]
-  Index beyond = -1;         ///< of a thin surface: the cell on its other side, beyond the face that it closes
+  Index beyond = -1;  ///< of a thin surface: the cell on its other side, beyond the face that it closes
 };
 
 /// A cell of which the gas has only a part.
