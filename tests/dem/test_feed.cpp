@@ -224,7 +224,7 @@ TEST(Feed, KeepsClearOfWallsThatMoveAsTheyStand) {
   Wall piston = block_wall({-0.02, 0, 0.03}, {0.008, 0.02, 0.04});
   piston.motion.amplitude = {0.004, 0, 0};
   piston.motion.frequency = 10;
-  for (const auto& [time, face] : {std::pair{-1.0, 0.008}, {0.025, 0.012}, {0.075, 0.004}}) {
+  for (const auto& [time, face] : {std::pair{-0.025, 0.008}, {0.025, 0.012}, {0.075, 0.004}}) {
     Real nearest = 1;
     for (const ParticleSeed& p : places_of(setup, {piston}, time))
       nearest = std::min(nearest, p.position.x - 0.001);

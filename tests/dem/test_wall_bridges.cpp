@@ -159,6 +159,26 @@ TEST(WallBridges, AreTwoInACornerAndOneOnAnEdge) {
   }
 }
 
+TEST(WallBridges, FormOnlyWhereTheParticleTouches) {
+  // It touches the floor, and is 20 µm, within reach, from a side of the same wall; or from a slope beside the floor, another
+  // wall that rises at 15°, less than the 25° by which a bridge is known.
+  const Real rise = std::tan(15 * M_PI / 180), slant = std::cos(15 * M_PI / 180);
+  Wall corner;
+  corner.planes = {{{1, 0, 0}, 0.05 - radius - 2e-5}, {{0, 0, 1}, 0.05}};
+  const Wall floor = PlaneWall{"floor", {0, 0, 0.05}, {0, 0, 1}, {}, 1};
+  // The distance of the centre (0.05, 0.05, 0.05 + radius) from the slope is radius + 20 µm.
+  const Vec3 up{-rise * slant, 0, slant};
+  const Wall slope = PlaneWall{"slope", Vec3{0.05, 0.05, 0.05 + radius} - (radius + 2e-5) * up, up, {}, 1};
+  for (const std::vector<Wall>& walls : {std::vector<Wall>{corner}, std::vector<Wall>{floor, slope}}) {
+    Engine engine(heavy_setup(walls));
+    engine.set_particles({{{0.05, 0.05, 0.05 + radius - 1e-7}, {}, {}, radius, 0, false}});
+    for (int k = 0; k < 20; ++k) {
+      advance(engine, 1);
+      EXPECT_EQ(engine.collect_report().wall_bridges, 1);
+    }
+  }
+}
+
 TEST(WallBridges, SlideAlongFromOneWallToTheNext) {
   // Two walls side by side, x = 0.05 their seam: the sphere touches the first, then hovers at 25 µm across the seam.
   const Real z = 0.05;
