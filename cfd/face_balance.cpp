@@ -48,8 +48,8 @@ void FaceBalance::prepare(const GasFields& fields) {
 Real FaceBalance::pressure_jump(const GasFields& fields, const MomentumEquation& momentum, int axis,
                                 Index f) const {
   const auto a = static_cast<std::size_t>(axis);
-  return -0.5 * options_.density * fields.superficial[a](f) * momentum.convection().normal_value[a](f) *
-         kinetic_[a](f);
+  return -0.5 * fields.face_density[a](f) * fields.superficial[a](f) *
+         momentum.convection().normal_value[a](f) * kinetic_[a](f);
 }
 
 void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
@@ -60,7 +60,6 @@ void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, c
   const Real* eps = fields.void_fraction.data();
   const Real* pressure = fields.pressure.data();
   const Real* volume = geometry_.volume.data();
-  const Real rho = options_.density;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const AxisMetrics& metrics = geometry_.axis[a];
@@ -81,17 +80,19 @@ void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, c
       const Real transport = scale_m * own[m] + scale_p * own[p];
       const Real relaxed = scale_m * relax[m] + scale_p * relax[p];
       const Real inflow = wm * in[m] / volume[m] + wp * in[p] / volume[p];
-      const Real transient = rho * void_fraction_old_[a](f) / (dt * eps_f);
+      const Real rho = fields.face_density[a](f);
+      const Real rho_old = fields.face_density_old[a](f);
+      const Real transient = rho_old * void_fraction_old_[a](f) / (dt * eps_f);
       // The convective pressure step: implicit where it slows the face down, explicit where it speeds it up.
       const Real kinetic = 0.5 * rho * normal_value[f] * kinetic_[a](f) * eps_f / distance;
       const Real braking = std::max(kinetic, Real{0});
       const Real speeding = std::max(-kinetic, Real{0});
       const Real stiffness = transient + eps_f * resistance_[a](f) + relaxed + braking;
-      const Real pull = inflow + rho * velocity_old[f] / dt + (relaxed + speeding) * velocity[f] +
+      const Real pull = inflow + rho_old * velocity_old[f] / dt + (relaxed + speeding) * velocity[f] +
                         eps_f * ((pressure[m] - pressure[p]) / distance + force_[a](f));
       velocity[f] = pull / (stiffness + transport);
       mobility_[a](f) = eps_f / (stiffness * distance);
-      matrix.coefficient[a](f) = geometry_.area[a](f) * mobility_[a](f);
+      matrix.coefficient[a](f) = geometry_.area[a](f) * mobility_[a](f) * (rho / options_.density);
     });
     copy_periodic_faces(geometry_.stencil, axis, fields.superficial[a]);
     copy_periodic_faces(geometry_.stencil, axis, mobility_[a]);
@@ -117,13 +118,12 @@ Real FaceBalance::outlet_pressure(const GasFields& fields, std::size_t b) const 
   const BoundaryPiece& piece = boundaries_.pieces[b];
   const Real inside =
       std::min(fields.piece_flow[b], Real{0}) / (piece.area * fields.void_fraction(piece.cell));
-  return piece.pressure - 0.5 * options_.density * inside * inside;
+  return piece.pressure - 0.5 * fields.piece_density[b] * inside * inside;
 }
 
 void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& momentum,
                                   const HostArray<Real>& influx, const HostArray<Real>& relaxation, Real dt,
                                   PressureMatrix& matrix) {
-  const Real rho = options_.density;
   for (std::size_t a = 0; a < 3; ++a) Kokkos::deep_copy(matrix.boundary[a], 0.0);
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
@@ -135,16 +135,19 @@ void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& mom
     const Real speed = fields.piece_flow[b] / piece.area;
     const Real transport = momentum.own()(e) / (volume * eps);
     const Real relaxed = relaxation(e) / (volume * eps);
+    const Real rho = fields.piece_density[b];
+    const Real rho_old = fields.density_old(c);
     const Real braking = 0.5 * rho * std::max(-speed, Real{0}) / (eps * piece.half_width);
-    const Real stiffness = rho * fields.void_fraction_old(c) / (dt * eps) +
+    const Real stiffness = rho_old * fields.void_fraction_old(c) / (dt * eps) +
                            fields.exchange_coefficient(c) / eps + relaxed + braking;
     const Real outward_force = piece.outward * (fields.force(e) / eps + options_.body_force[piece.axis]);
     const Real pull = piece.outward * influx(e) / volume +
-                      rho * fields.piece_flow_old[b] / (piece.area * dt) + relaxed * speed +
+                      rho_old * fields.piece_flow_old[b] / (piece.area * dt) + relaxed * speed +
                       eps * ((fields.pressure(c) - piece.pressure) / piece.half_width + outward_force);
     outlet_mobility_[b] = eps / (stiffness * piece.half_width);
     fields.piece_flow[b] = piece.area * pull / (stiffness + transport);
-    matrix.boundary[static_cast<std::size_t>(piece.axis)](c) += piece.area * outlet_mobility_[b];
+    matrix.boundary[static_cast<std::size_t>(piece.axis)](c) +=
+        piece.area * outlet_mobility_[b] * (rho / options_.density);
   }
 }
 

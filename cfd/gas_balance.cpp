@@ -18,13 +18,13 @@ Real GasBalance::mass_out() const {
 }
 
 Real GasBalance::mass_defect() const {
-  const Real largest = std::max(mass_in() + mass_out(), mass_initial);
-  return largest > 0 ? std::abs(mass - mass_initial - mass_in() + mass_out()) / largest : 0;
+  const Real largest = std::max(mass_in() + mass_out() + std::abs(mass_given), mass_initial);
+  return largest > 0 ? std::abs(mass - mass_initial - mass_in() + mass_out() - mass_given) / largest : 0;
 }
 
 Vec3 GasBalance::momentum_residual() const {
   return momentum - momentum_initial - convected - boundary_pressure - boundary_shear - body_force - drag -
-         particle_pressure;
+         particle_pressure - vapour;
 }
 
 Real GasBalance::momentum_defect() const {

@@ -22,6 +22,7 @@ void for_totals(Balance& b, Visit&& visit) {
   visit("gas/balance/body_force", b.body_force);
   visit("gas/balance/drag", b.drag);
   visit("gas/balance/particle_pressure", b.particle_pressure);
+  visit("gas/balance/vapour", b.vapour);
   visit("gas/balance/gross", b.gross);
 }
 
@@ -43,12 +44,11 @@ void GasSolver::save(core::CheckpointWriter& writer) const {
     out.push_back(patch.mass_out);
   }
   writer.write("gas/balance/mass_initial", s.balance.mass_initial);
+  writer.write("gas/balance/mass_given", s.balance.mass_given);
   writer.write("gas/balance/mass_in", in);
   writer.write("gas/balance/mass_out", out);
   for_totals(s.balance, [&](const char* name, const Vec3& total) { writer.write(name, total); });
-  for (const auto& scalar : s.scalars) {
-    if (scalar) scalar->save(writer);
-  }
+  s.scalars.save(writer, s.fields);
 }
 
 void GasSolver::load(core::CheckpointReader& reader) {
@@ -61,6 +61,7 @@ void GasSolver::load(core::CheckpointReader& reader) {
   reader.read_into("gas/void_fraction_old", s.state.void_fraction_old);
   for (std::size_t a = 0; a < 3; ++a) reader.read_into(velocity_names[a], s.fields.superficial[a]);
   reader.read_into("gas/boundary_flow", s.fields.piece_flow);
+  s.scalars.load(reader, s.fields);
   const Index n = s.fields.cells;
   for (Index c = 0; c < n; ++c) {
     for (int a = 0; a < 3; ++a) s.fields.velocity(c + a * n) = s.state.velocity(c)[a];
@@ -77,11 +78,9 @@ void GasSolver::load(core::CheckpointReader& reader) {
     s.balance.patches[p].mass_out = out[p];
   }
   s.balance.mass_initial = reader.read_double("gas/balance/mass_initial");
+  s.balance.mass_given = reader.read_double("gas/balance/mass_given");
   for_totals(s.balance, [&](const char* name, Vec3& total) { total = reader.read_vec3(name); });
   s.update_stocks();
-  for (auto& scalar : s.scalars) {
-    if (scalar) scalar->load(reader, s.fields);
-  }
   s.pressure_solver.drop();
 }
 

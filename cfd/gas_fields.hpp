@@ -16,9 +16,15 @@ struct GasFields {
   HostArray<Real> velocity, velocity_old;  ///< 3 cells [m/s]
   HostArray<Real> pressure;                ///< [Pa]
   HostArray<Real> void_fraction, void_fraction_old;
-  HostArray<Real> exchange_coefficient;    ///< beta [kg/m3/s]
-  HostArray<Real> force;                   ///< explicit force on the gas, 3 cells [N/m3]
-  FaceField superficial, superficial_old;  ///< face velocity [m/s]
+  HostArray<Real> exchange_coefficient;  ///< beta, and the vapour that becomes gas [kg/m3/s]
+  HostArray<Real> force;                 ///< explicit force on the gas, 3 cells [N/m3]
+  HostArray<Real> mass_source;           ///< [kg/m3/s]
+  HostArray<Real> density, density_old;  ///< [kg/m3]
+  HostArray<Real> excess_density;  ///< that gravity acts on: over the one of the hydrostatic pressure [kg/m3]
+  HostArray<Real> viscosity;       ///< [Pa s]
+  FaceField face_density, face_density_old;  ///< of faces with two cells; 0 on boundary faces [kg/m3]
+  std::vector<Real> piece_density;           ///< of what flows through each boundary piece [kg/m3]
+  FaceField superficial, superficial_old;    ///< face velocity [m/s]
   FaceField mass_flux;  ///< rho volume flux of faces with two cells; 0 on boundary faces [kg/s]
   std::vector<Real> piece_flow, piece_flow_old;  ///< outward volume flow of each boundary piece [m3/s]
 };

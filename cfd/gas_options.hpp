@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "cfd/gas_property_laws.hpp"
 #include "cfd/scalar_options.hpp"
 #include "core/model_list.hpp"
 #include "core/types.hpp"
@@ -44,9 +45,30 @@ struct GasSolverOptions {
   PressureSolver pressure_solver = PressureSolver::multigrid;
 };
 
+/// What the density follows.
+enum class DensityLaw {
+  constant,
+  ideal_gas  ///< temperature and moisture at the start of the step, at the reference pressure (low Mach number)
+};
+enum class ViscosityLaw {
+  constant,
+  sutherland  ///< of air, at the temperature at the start of the step
+};
+
+/// Buoyancy of a gas of constant density: -density expansion (T - temperature) gravity.
+struct Boussinesq {
+  Real expansion = 0;    ///< [1/K]; 1/temperature for an ideal gas
+  Real temperature = 0;  ///< at which the gas is as heavy as its density says [K]
+};
+
 struct GasOptions {
-  Real density = 0;    ///< [kg/m3]
-  Real viscosity = 0;  ///< dynamic [Pa s]
+  /// [kg/m3]. Of an ideal gas: the density that the hydrostatic part of the pressure is counted with.
+  Real density = 0;
+  Real viscosity = 0;  ///< dynamic [Pa s]; of use where it is constant
+  DensityLaw density_law = DensityLaw::constant;
+  ViscosityLaw viscosity_law = ViscosityLaw::constant;
+  Real reference_pressure = standard_atmosphere;  ///< absolute, everywhere, of an ideal gas [Pa]
+  std::optional<Boussinesq> boussinesq;
   /// [m/s2]. The pressure solved for is p - density gravity.x, so gravity moves nothing by itself.
   Vec3 gravity{0, 0, -9.81};
   Vec3 body_force;  ///< on the gas, besides gravity, per volume of gas [N/m3]

@@ -49,7 +49,8 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
       momentum(geometry, boundaries, options),
       faces(geometry, boundaries, options),
       pressure_matrix(geometry.stencil),
-      pressure_solver(geometry, options.solver.pressure_solver) {
+      pressure_solver(geometry, options.solver.pressure_solver),
+      scalars(geometry, boundaries, patches, options) {
   check_options(options);
   const Index n = fields.cells;
   pressure_matrix.singular = !boundaries.has_outlet;
@@ -69,13 +70,9 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
   state.void_fraction_old = fields.void_fraction_old;
   state.superficial_velocity = fields.superficial;
   for (const std::string& name : boundaries.patch_names) balance.patches.push_back({name, 0, 0});
-  for (std::size_t i = 0; i < scalar_count; ++i) {
-    if (!options.scalars[i]) continue;
-    std::vector<ScalarBoundary> conditions;
-    for (const BoundaryPatch& patch : patches) conditions.push_back(patch.scalars[i]);
-    scalars[i].emplace(std::string(scalar_names[i]), geometry, boundaries, conditions, *options.scalars[i],
-                       options.convection, options.density);
-    state.scalars[i] = scalars[i]->value();
+  state.density = fields.density;
+  for (const Scalar scalar : {Scalar::temperature, Scalar::moisture}) {
+    if (scalars[scalar]) state.scalars[index_of(scalar)] = scalars[scalar]->value();
   }
 }
 
@@ -89,6 +86,7 @@ void GasSolver::Impl::initialise(const HostArray<Real>& given_void_fraction) {
     for (int a = 0; a < 3; ++a) fields.velocity(c + a * n) = 0;
   }
   Kokkos::deep_copy(fields.void_fraction_old, void_fraction);
+  scalars.initialise(fields);
   Kokkos::deep_copy(fields.pressure, 0.0);
   Kokkos::deep_copy(state.pressure_gradient, Vec3{});
   for (int axis = 0; axis < 3; ++axis) {
@@ -122,9 +120,6 @@ void GasSolver::Impl::initialise(const HostArray<Real>& given_void_fraction) {
   update_stocks();
   balance.mass_initial = balance.mass;
   balance.momentum_initial = balance.momentum;
-  for (auto& scalar : scalars) {
-    if (scalar) scalar->initialise(fields);
-  }
 }
 
 void GasSolver::Impl::take_exchange(const ParticleExchange& exchange, Real dt) {
@@ -151,6 +146,40 @@ void GasSolver::Impl::take_exchange(const ParticleExchange& exchange, Real dt) {
     const Vec3 force = exchange.explicit_force(c);
     for (int a = 0; a < 3; ++a) fields.force(c + a * n) = force[a];
   }
+  scalars.prepare(fields);
+  for_entries("cfd::gas_solver::buoyancy", n, [&](Index c) {
+    if (!(geometry.volume(c) > 0)) return;  // keeps its force, of 0
+    const Real weight = fields.void_fraction(c) * fields.excess_density(c);
+    for (int a = 0; a < 3; ++a) fields.force(c + a * n) += weight * options.gravity[a];
+  });
+  take_mass_source(exchange, dt);
+}
+
+// What becomes gas at the velocity v pulls the gas there with S (v - u), as drag does.
+void GasSolver::Impl::take_mass_source(const ParticleExchange& exchange, Real dt) {
+  const HostArray<Real>& source = exchange.mass_source;
+  const Index n = fields.cells;
+  if (source.extent(0) != exchange.mass_source_momentum.extent(0) ||
+      (source.extent(0) > 0 && source.extent(0) != static_cast<std::size_t>(n))) {
+    throw std::invalid_argument("the source of mass has another size than the gas grid");
+  }
+  if (source.extent(0) == 0) {
+    Kokkos::deep_copy(fields.mass_source, 0.0);
+    return;
+  }
+  Kokkos::deep_copy(fields.mass_source, source);
+  for (Index c = 0; c < n; ++c) {
+    if (!(geometry.volume(c) > 0)) {
+      fields.mass_source(c) = 0;
+      continue;
+    }
+    // Condensation leaves some gas.
+    if (!(fields.density_old(c) * fields.void_fraction_old(c) + dt * source(c) > 0)) {
+      fail(fmt::format("the source of mass is {} kg/m3/s", source(c)), c);
+    }
+    fields.exchange_coefficient(c) += source(c);
+    for (int a = 0; a < 3; ++a) fields.force(c + a * n) += exchange.mass_source_momentum(c)[a];
+  }
 }
 
 // Coefficients at the velocities and fluxes at hand; diagonal terms of time, drag and relaxation.
@@ -160,10 +189,11 @@ void GasSolver::Impl::assemble_momentum(Real dt) {
   const Real keep = (1 - options.solver.velocity_relaxation) / options.solver.velocity_relaxation;
   for_entries("cfd::gas_solver::inertia", n, [&](Index c) {
     // A cell without gas takes part with a velocity of 0: any diagonal will do.
-    const Real own_inertia = geometry.volume(c) > 0
-                                 ? geometry.volume(c) * (options.density * fields.void_fraction_old(c) / dt +
-                                                         fields.exchange_coefficient(c))
-                                 : 1;
+    const Real own_inertia =
+        geometry.volume(c) > 0
+            ? geometry.volume(c) *
+                  (fields.density_old(c) * fields.void_fraction_old(c) / dt + fields.exchange_coefficient(c))
+            : 1;
     for (Index e = c; e < 3 * n; e += n) {
       relaxation(e) = keep * (momentum.own()(e) + own_inertia);
       inertia(e) = own_inertia + relaxation(e);
@@ -175,39 +205,51 @@ void GasSolver::Impl::update_mass_flux() {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     for_faces("cfd::gas_solver::mass_flux", geometry.stencil, axis, [&](Index f, Index, Index, Index, Index) {
-      fields.mass_flux[a](f) = options.density * geometry.area[a](f) * fields.superficial[a](f);
+      fields.mass_flux[a](f) = fields.face_density[a](f) * geometry.area[a](f) * fields.superficial[a](f);
     });
     copy_periodic_faces(geometry.stencil, axis, fields.mass_flux[a]);
   }
 }
 
-// rhs = -(volume that leaves the cell + growth of its gas volume) per second.
+// rhs = -(mass that leaves the cell + growth of its gas - vapour that becomes gas) per second, over the density of
+// reference: a volume where the density is constant.
 Real GasSolver::Impl::compute_continuity_residual(Real dt) {
   const Stencil& s = geometry.stencil;
   for_rows("cfd::gas_solver::continuity", s, [&](const Index r) {
     const Row row = s.row(r);
     for (Index i = 0; i < s.n.x; ++i) {
       const Index c = row.cell + i;
-      Real out = geometry.volume(c) * (fields.void_fraction(c) - fields.void_fraction_old(c)) / dt;
+      Real out = geometry.volume(c) * (growth_of_gas(c, dt) - fields.mass_source(c) / options.density);
       const Index first[3] = {row.x_face + i, row.y_face + i, row.z_face + i};
       for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
         const Index f = first[axis];
         const Index g = f + s.face_step(axis);
+        // The density of boundary faces is 0: what flows there follows below.
         out +=
-            geometry.area[a](g) * fields.superficial[a](g) - geometry.area[a](f) * fields.superficial[a](f);
+            geometry.area[a](g) * fields.superficial[a](g) * (fields.face_density[a](g) / options.density) -
+            geometry.area[a](f) * fields.superficial[a](f) * (fields.face_density[a](f) / options.density);
       }
       rhs(c) = -out;
     }
   });
+  for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
+    rhs(boundaries.pieces[b].cell) -= fields.piece_flow[b] * (fields.piece_density[b] / options.density);
+  }
   return sum("cfd::gas_solver::continuity_sum", s.cells(), [&](Index c) { return std::abs(rhs(c)); });
+}
+
+// Of the gas in a cell, over the density of reference, per volume of cell and second.
+Real GasSolver::Impl::growth_of_gas(Index c, Real dt) const {
+  return (fields.void_fraction(c) * (fields.density(c) / options.density) -
+          fields.void_fraction_old(c) * (fields.density_old(c) / options.density)) /
+         dt;
 }
 
 // Volume flow through a typical section of the domain, plus what moving particles displace [m3/s].
 Real GasSolver::Impl::gas_throughput(Real dt) {
-  Real total = sum("cfd::gas_solver::displaced", fields.cells, [&](Index c) {
-    return geometry.volume(c) * std::abs(fields.void_fraction(c) - fields.void_fraction_old(c)) / dt;
-  });
+  Real total = sum("cfd::gas_solver::displaced", fields.cells,
+                   [&](Index c) { return geometry.volume(c) * std::abs(growth_of_gas(c, dt)); });
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const Index count = geometry.stencil.faces(axis);
@@ -255,7 +297,7 @@ void GasSolver::Impl::solve_momentum(Real dt, bool tightly, StepReport& report) 
   const Index n = fields.cells;
   faces.compute_cell_force(fields, momentum, cell_force);
   for_entries("cfd::gas_solver::cell_force", n, [&](Index c) {
-    const Real mass = options.density * fields.void_fraction_old(c) * geometry.volume(c) / dt;
+    const Real mass = fields.density_old(c) * fields.void_fraction_old(c) * geometry.volume(c) / dt;
     for (Index e = c; e < 3 * n; e += n) {
       cell_force(e) += mass * fields.velocity_old(e) + relaxation(e) * fields.velocity(e);
     }
@@ -330,36 +372,28 @@ void GasSolver::Impl::copy_velocity_to_state() {
   }
 }
 
-void GasSolver::Impl::update_scalars(Real dt, const ParticleExchange& exchange, StepReport& report) {
-  for (std::size_t i = 0; i < scalar_count; ++i) {
-    if (!scalars[i]) continue;
-    const ScalarReport scalar = scalars[i]->update(fields, dt, exchange.scalars[i]);
-    report.scalar_iterations += scalar.iterations;
-    report.scalar_cells_returned += scalar.returned;
-  }
-}
-
-void GasSolver::Impl::finish_step(Real dt, StepReport& report) {
+void GasSolver::Impl::finish_step(Real dt, const ParticleExchange& exchange, StepReport& report) {
   faces.compute_pressure_gradient(fields, state.pressure_gradient);
   copy_velocity_to_state();
   report.courant_number = check_and_find_courant(dt);
-  add_to_balance(dt);
+  add_to_balance(dt, exchange);
+  const ScalarReport scalar = scalars.update(fields, dt, exchange.scalars);
+  report.scalar_iterations = scalar.iterations;
+  report.scalar_cells_returned = scalar.returned;
   state.time += dt;
 }
 
 void GasSolver::Impl::update_stocks() {
-  const Real rho = options.density;
   const Index n = fields.cells;
-  balance.mass = rho * sum("cfd::gas_solver::mass", n,
-                           [&](Index c) { return geometry.volume(c) * fields.void_fraction(c); });
+  const auto mass = [&](Index c) { return fields.density(c) * geometry.volume(c) * fields.void_fraction(c); };
+  balance.mass = sum("cfd::gas_solver::mass", n, mass);
   for (int a = 0; a < 3; ++a) {
-    balance.momentum[a] = rho * sum("cfd::gas_solver::momentum", n, [&](Index c) {
-                            return geometry.volume(c) * fields.void_fraction(c) * fields.velocity(c + a * n);
-                          });
+    balance.momentum[a] =
+        sum("cfd::gas_solver::momentum", n, [&](Index c) { return mass(c) * fields.velocity(c + a * n); });
   }
 }
 
-void GasSolver::Impl::add_to_balance(Real dt) {
+void GasSolver::Impl::add_to_balance(Real dt, const ParticleExchange& exchange) {
   update_stocks();
   const Index n = fields.cells;
   Vec3 convected, pressed, sheared;
@@ -370,7 +404,7 @@ void GasSolver::Impl::add_to_balance(Real dt) {
     pressed[piece.axis] -= dt * piece.outward * piece.area * faces.boundary_pressure(fields, b);
     if (piece.patch < 0) continue;
     PatchBalance& patch = balance.patches[static_cast<std::size_t>(piece.patch)];
-    const Real out = options.density * fields.piece_flow[b] * dt;
+    const Real out = fields.piece_density[b] * fields.piece_flow[b] * dt;
     (out > 0 ? patch.mass_out : patch.mass_in) += std::abs(out);
   }
   Index done = -1;
@@ -388,22 +422,39 @@ void GasSolver::Impl::add_to_balance(Real dt) {
     }
     return result;
   };
-  const Vec3 body = total("cfd::gas_solver::body_impulse",
-                          [&](Index c, int a) { return fields.void_fraction(c) * options.body_force[a]; });
+  const Vec3 body = total("cfd::gas_solver::body_impulse", [&](Index c, int a) {
+    return fields.void_fraction(c) * (options.body_force[a] + fields.excess_density(c) * options.gravity[a]);
+  });
+  const bool gaining = exchange.mass_source.extent(0) > 0;
+  const Vec3 vapour = total("cfd::gas_solver::vapour_impulse", [&](Index c, int a) {
+    return gaining ? exchange.mass_source_momentum(c)[a] : 0;
+  });
+  if (gaining) {
+    balance.mass_given += dt * sum("cfd::gas_solver::mass_given", n,
+                                   [&](Index c) { return geometry.volume(c) * exchange.mass_source(c); });
+  }
   const Vec3 drag = total("cfd::gas_solver::drag_impulse", [&](Index c, int a) {
-    return fields.force(c + a * n) - fields.exchange_coefficient(c) * fields.velocity(c + a * n);
+    const Real own = fields.exchange_coefficient(c) - fields.mass_source(c);
+    const Real buoyancy = fields.void_fraction(c) * fields.excess_density(c) * options.gravity[a];
+    return fields.force(c + a * n) - own * fields.velocity(c + a * n) - buoyancy -
+           (gaining ? exchange.mass_source_momentum(c)[a] : 0);
   });
   const Vec3 particle_pressure = total("cfd::gas_solver::pressure_impulse", [&](Index c, int a) {
     return (1 - fields.void_fraction(c)) * state.pressure_gradient(c)[a];
   });
-  for (const Vec3& part : {convected, pressed, sheared, body, drag, particle_pressure}) {
+  for (const Vec3& part : {convected, pressed, sheared, body, drag, particle_pressure, vapour}) {
     for (int a = 0; a < 3; ++a) balance.gross[a] += std::abs(part[a]);
   }
+  // Buoyancy lifts here and presses down there: what it exchanges is more than its sum.
+  balance.gross += total("cfd::gas_solver::gross_buoyancy", [&](Index c, int a) {
+    return fields.void_fraction(c) * std::abs(fields.excess_density(c) * options.gravity[a]);
+  });
   balance.convected += convected;
   balance.boundary_pressure += pressed;
   balance.boundary_shear += sheared;
   balance.body_force += body;
   balance.drag += drag;
+  balance.vapour += vapour;
   balance.particle_pressure += particle_pressure;
 }
 
@@ -466,8 +517,7 @@ StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
     report.velocity_change = s.face_velocity_change();
     done = last || (nearly_there && report.velocity_change < options.outer_tolerance);
   }
-  s.update_scalars(dt, exchange, report);
-  s.finish_step(dt, report);
+  s.finish_step(dt, exchange, report);
   return report;
 }
 
@@ -498,7 +548,7 @@ Vec3 GasSolver::surface_force(std::size_t surface) const {
 const GasState& GasSolver::state() const { return impl_->state; }
 const GasBalance& GasSolver::balance() const { return impl_->balance; }
 const ScalarBalance* GasSolver::balance(Scalar scalar) const {
-  const auto& transport = impl_->scalars[index_of(scalar)];
+  const auto& transport = impl_->scalars[scalar];
   return transport ? &transport->balance() : nullptr;
 }
 

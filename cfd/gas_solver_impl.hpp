@@ -1,8 +1,6 @@
 // Inside of GasSolver; only its own files include this.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +9,10 @@
 #include "cfd/fixed_sum.hpp"
 #include "cfd/flow_geometry.hpp"
 #include "cfd/gas_fields.hpp"
+#include "cfd/gas_scalars.hpp"
 #include "cfd/gas_solver.hpp"
 #include "cfd/momentum.hpp"
 #include "cfd/pressure_system.hpp"
-#include "cfd/scalar_transport.hpp"
 
 namespace pellicle::cfd {
 
@@ -26,14 +24,15 @@ struct GasSolver::Impl {
   void take_exchange(const ParticleExchange& exchange, Real dt);
   void assemble_momentum(Real dt);
   Real compute_continuity_residual(Real dt);
+  Real growth_of_gas(Index cell, Real dt) const;
   Real gas_throughput(Real dt);
   void solve_pressure(Real dt, bool tightly, StepReport& report);
   void solve_momentum(Real dt, bool tightly, StepReport& report);
   void update_mass_flux();
   Real face_velocity_change() const;
-  void finish_step(Real dt, StepReport& report);
-  void update_scalars(Real dt, const ParticleExchange& exchange, StepReport& report);
-  void add_to_balance(Real dt);
+  void take_mass_source(const ParticleExchange& exchange, Real dt);
+  void finish_step(Real dt, const ParticleExchange& exchange, StepReport& report);
+  void add_to_balance(Real dt, const ParticleExchange& exchange);
   void update_stocks();
   void copy_velocity_to_state();
   Real check_and_find_courant(Real dt) const;
@@ -51,7 +50,7 @@ struct GasSolver::Impl {
   PressureLinearSolver pressure_solver;
   GasState state;
   GasBalance balance;
-  std::array<std::optional<ScalarTransport>, scalar_count> scalars;
+  GasScalars scalars;
 
   HostArray<Real> influx, inertia, relaxation, cell_force, rhs, correction;
   FaceField before;  ///< face velocities at the start of an outer iteration

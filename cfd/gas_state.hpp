@@ -28,6 +28,7 @@ struct GasState {
   FaceField volume_flux;           ///< of gas along +axis [m3/s]; satisfies continuity
   FaceField superficial_velocity;  ///< volume_flux per area, over the open part of the face [m/s]
   std::array<HostArray<Real>, scalar_count> scalars{};  ///< [K], [kg/kg]; empty where not solved
+  HostArray<Real> density;                              ///< at the end of the last step [kg/m3]
 };
 
 /// What the particles do to the gas during the coming step, per gas cell.
@@ -37,6 +38,9 @@ struct ParticleExchange {
   HostArray<Real> exchange_coefficient;              ///< beta [kg/m3/s], taken implicitly
   HostArray<Vec3> explicit_force;                    ///< [N/m3]
   std::array<ScalarSource, scalar_count> scalars{};  ///< heat and vapour; empty: none
+  HostArray<Real>
+      mass_source{};  ///< vapour that becomes gas, in the continuity equation [kg/m3/s]; empty: none
+  HostArray<Vec3> mass_source_momentum{};  ///< that it brings along [N/m3]; of the same size as mass_source
 };
 
 /// Arrays for a grid: void fraction 1, no exchange. With these the solver is pure CFD.

@@ -23,6 +23,14 @@ GasFields::GasFields(const FlowGeometry& geometry, std::size_t piece_count)
   void_fraction_old = make_array("cfd::gas_fields::void_fraction_old", cells);
   exchange_coefficient = make_array("cfd::gas_fields::exchange_coefficient", cells);
   force = make_array("cfd::gas_fields::force", 3 * cells);
+  mass_source = make_array("cfd::gas_fields::mass_source", cells);
+  density = make_array("cfd::gas_fields::density", cells);
+  density_old = make_array("cfd::gas_fields::density_old", cells);
+  excess_density = make_array("cfd::gas_fields::excess_density", cells);
+  viscosity = make_array("cfd::gas_fields::viscosity", cells);
+  face_density = make_face_field(geometry.stencil, "cfd::gas_fields::face_density");
+  face_density_old = make_face_field(geometry.stencil, "cfd::gas_fields::face_density_old");
+  piece_density.assign(piece_count, 0);
   superficial = make_face_field(geometry.stencil, "cfd::gas_fields::superficial");
   superficial_old = make_face_field(geometry.stencil, "cfd::gas_fields::superficial_old");
   mass_flux = make_face_field(geometry.stencil, "cfd::gas_fields::mass_flux");
@@ -66,14 +74,15 @@ void MomentumEquation::prepare(const GasFields& fields, Real dt) {
     const auto a = static_cast<std::size_t>(axis);
     const AxisMetrics& metrics = geometry_.axis[a];
     const Real* eps = fields.void_fraction.data();
+    const Real* mu = fields.viscosity.data();
     for_faces(labels[a], geometry_.stencil, axis,
               [&](Index f, Index minus, Index plus, Index position, Index) {
                 const auto at = static_cast<std::size_t>(position);
                 const Real w = metrics.linear_minus[at];
                 // A cell that is its own neighbour, alone along a periodic axis, does not act on itself: in the face
                 // balance its term would not cancel.
-                conductance_[a](f) =
-                    minus == plus ? 0 : options_.viscosity * geometry_.area[a](f) / geometry_.distance[a](f);
+                const Real viscosity = minus == plus ? 0 : mu[plus] + w * (mu[minus] - mu[plus]);
+                conductance_[a](f) = viscosity * geometry_.area[a](f) / geometry_.distance[a](f);
                 tangential_conductance_[a](f) = conductance_[a](f) * (w * eps[minus] + (1 - w) * eps[plus]);
               });
     copy_periodic_faces(geometry_.stencil, axis, conductance_[a]);
@@ -83,8 +92,11 @@ void MomentumEquation::prepare(const GasFields& fields, Real dt) {
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
     if (piece.kind != PieceKind::no_slip && piece.kind != PieceKind::inlet) continue;
-    const Real growth = (fields.void_fraction(piece.cell) - fields.void_fraction_old(piece.cell)) / dt;
-    wall_stress_[b] = -piece.outward * options_.viscosity * piece.area * growth;
+    const Index c = piece.cell;
+    const Real thinning = fields.density_old(c) / fields.density(c);
+    const Real growth = (fields.void_fraction(c) - thinning * fields.void_fraction_old(c)) / dt -
+                        fields.mass_source(c) / fields.density(c);
+    wall_stress_[b] = -piece.outward * fields.viscosity(c) * piece.area * growth;
   }
 }
 
@@ -170,18 +182,21 @@ struct PieceTerms {
   Real mirror = 0;  ///< viscous conductance to the mirrored cell beyond a wall without shear [kg/s]
 };
 
-PieceTerms piece_terms(const BoundaryPiece& piece, Real flow, Real eps, const GasOptions& options) {
+PieceTerms piece_terms(const GasFields& fields, const BoundaryPiece& piece, std::size_t b) {
+  const Real flow = fields.piece_flow[b];
+  const Real eps = fields.void_fraction(piece.cell);
+  const Real viscosity = fields.viscosity(piece.cell);
   PieceTerms terms;
   if (piece.kind == PieceKind::inlet || piece.kind == PieceKind::outlet) {
-    terms.inflow = options.density * std::max(-flow, Real{0});
+    terms.inflow = fields.piece_density[b] * std::max(-flow, Real{0});
     // The superficial velocity is the same on both sides of the face; inside, the gas has eps of the room.
     terms.brought[piece.axis] = piece.outward * flow / (piece.area * eps);
   }
   if (piece.kind == PieceKind::inlet || piece.kind == PieceKind::no_slip) {
-    terms.shear = options.viscosity * eps * piece.area / piece.half_width;
+    terms.shear = viscosity * eps * piece.area / piece.half_width;
   }
   if (piece.kind == PieceKind::slip) {
-    terms.mirror = options.viscosity * eps * piece.area / (2 * piece.half_width);
+    terms.mirror = viscosity * eps * piece.area / (2 * piece.half_width);
   }
   return terms;
 }
@@ -192,8 +207,7 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
   const Index n = fields.cells;
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    const PieceTerms terms =
-        piece_terms(piece, fields.piece_flow[b], fields.void_fraction(piece.cell), options_);
+    const PieceTerms terms = piece_terms(fields, piece, b);
     for (int a = 0; a < 3; ++a) {
       const Index c = piece.cell + a * n;
       const Real shear = a == piece.axis ? 0 : terms.shear;
@@ -216,7 +230,9 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
 // square of the distance, as continuity wants it to, and the components stay apart from each other.
 Real MomentumEquation::surface_conductance(const GasFields& fields, const SurfacePiece& piece) const {
   const bool sticks = geometry_.surfaces[static_cast<std::size_t>(piece.surface)].sticks;
-  return sticks ? options_.viscosity * fields.void_fraction(piece.cell) * piece.area / piece.distance : 0;
+  return sticks
+             ? fields.viscosity(piece.cell) * fields.void_fraction(piece.cell) * piece.area / piece.distance
+             : 0;
 }
 
 void MomentumEquation::add_surfaces(const GasFields& fields) {
@@ -267,9 +283,8 @@ Vec3 MomentumEquation::surface_shear(const GasFields& fields, std::size_t b) con
 
 Vec3 MomentumEquation::convected_inflow(const GasFields& fields, std::size_t b) const {
   const BoundaryPiece& piece = boundaries_.pieces[b];
-  const PieceTerms terms =
-      piece_terms(piece, fields.piece_flow[b], fields.void_fraction(piece.cell), options_);
-  const Real outflow = options_.density * std::max(fields.piece_flow[b], Real{0});
+  const PieceTerms terms = piece_terms(fields, piece, b);
+  const Real outflow = fields.piece_density[b] * std::max(fields.piece_flow[b], Real{0});
   Vec3 result;
   for (int a = 0; a < 3; ++a) {
     result[a] = terms.inflow * terms.brought[a] - outflow * fields.velocity(piece.cell + a * fields.cells);
@@ -279,8 +294,7 @@ Vec3 MomentumEquation::convected_inflow(const GasFields& fields, std::size_t b) 
 
 Vec3 MomentumEquation::shear_force(const GasFields& fields, std::size_t b) const {
   const BoundaryPiece& piece = boundaries_.pieces[b];
-  const PieceTerms terms =
-      piece_terms(piece, fields.piece_flow[b], fields.void_fraction(piece.cell), options_);
+  const PieceTerms terms = piece_terms(fields, piece, b);
   Vec3 result;
   for (int a = 0; a < 3; ++a) {
     const Real slip =
@@ -308,7 +322,7 @@ void MomentumEquation::apply(const char* label, const Real* u, Result&& result) 
       const Real *own = x + row.cell, *y_minus = x + row.y_minus, *y_plus = x + row.y_plus;
       const Real *z_minus = x + row.z_minus, *z_plus = x + row.z_plus;
       along_row(row, s.n.x, [&](Index i, Index left, Index right) {
-        result(row.cell + i + a * n, (xm[i] * own[left] + xp[i] * own[right]) +
+        result(row.cell + i + shift, (xm[i] * own[left] + xp[i] * own[right]) +
                                          (ym[i] * y_minus[i] + yp[i] * y_plus[i]) +
                                          (zm[i] * z_minus[i] + zp[i] * z_plus[i]));
       });

@@ -20,21 +20,24 @@ Real ScalarBalance::defect() const {
   return largest > 0 ? std::abs(stock - initial - through_boundaries() - sources) / largest : 0;
 }
 
+// Per second. Gas that leaves has the cell's value, and so has gas that comes back in without a given one.
+Real ScalarTransport::out_through(const PieceTerms& terms, std::size_t b) const {
+  const Real free_flow = carrier_out_[b] + terms.inflow;
+  return (terms.conductance + free_flow) * excess_(boundaries_.pieces[b].cell) -
+         (terms.inflow + terms.conductance) * terms.given;
+}
+
 void ScalarTransport::add_boundaries_to_balance(const GasFields& fields, Real dt) {
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    const PieceTerms terms = piece_terms(fields, b);
-    // Gas that leaves has the cell's value, and so has gas that comes back in without a given one.
-    const Real free_flow = options_.capacity * density_ * fields.piece_flow[b] + terms.inflow;
-    const Real in = dt * ((terms.inflow + terms.conductance) * terms.given -
-                          (terms.conductance + free_flow) * excess_(piece.cell));
+    const Real in = -dt * out_through(piece_terms(fields, b), b);
     if (piece.patch >= 0) balance_.into[static_cast<std::size_t>(piece.patch)] += in;
     balance_.gross += std::abs(in);
   }
 }
 
 // The equation is the balance less the value times continuity; what continuity leaves comes or goes with the value.
-void ScalarTransport::add_leftover_to_balance(const GasFields& fields, Real dt) {
+void ScalarTransport::add_leftover_to_balance(Real dt) {
   const Stencil& s = geometry_.stencil;
   const HostArray<Real>& residue = base_;  // the equation is solved
   for_rows("cfd::scalar_transport::residue", s, [&](const Index r) {
@@ -42,26 +45,23 @@ void ScalarTransport::add_leftover_to_balance(const GasFields& fields, Real dt) 
     const Index first[3] = {row.x_face, row.y_face, row.z_face};
     for (Index i = 0; i < s.n.x; ++i) {
       const Index c = row.cell + i;
-      const Real growth = (fields.void_fraction(c) - fields.void_fraction_old(c)) / dt;
-      residue(c) = density_ * geometry_.volume(c) * growth;
+      residue(c) = (content_(c) - content_old_(c)) / dt - gain_(c);
       for (int axis = 0; axis < 3; ++axis) {
-        const auto& flux = fields.mass_flux[static_cast<std::size_t>(axis)];
+        const auto& flux = carrier_[static_cast<std::size_t>(axis)];
         residue(c) += flux(first[axis] + i + s.face_step(axis)) - flux(first[axis] + i);
       }
     }
   });
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
-    residue(boundaries_.pieces[b].cell) += density_ * fields.piece_flow[b];
+    residue(boundaries_.pieces[b].cell) += carrier_out_[b];
   }
-  balance_.leftover +=
-      dt * options_.capacity *
-      sum_("cfd::scalar_transport::leftover", s.cells(), [&](Index c) { return residue(c) * excess_(c); });
+  balance_.leftover += dt * sum_("cfd::scalar_transport::leftover", s.cells(),
+                                 [&](Index c) { return residue(c) * excess_(c); });
 }
 
-void ScalarTransport::update_stock(const GasFields& fields) {
-  balance_.stock = options_.capacity * density_ *
-                   sum_("cfd::scalar_transport::stock", geometry_.stencil.cells(),
-                        [&](Index c) { return fields.void_fraction(c) * geometry_.volume(c) * excess_(c); });
+void ScalarTransport::update_stock() {
+  balance_.stock = sum_("cfd::scalar_transport::stock", geometry_.stencil.cells(),
+                        [&](Index c) { return content_(c) * excess_(c); });
 }
 
 void ScalarTransport::save(core::CheckpointWriter& writer) const {
@@ -74,7 +74,8 @@ void ScalarTransport::save(core::CheckpointWriter& writer) const {
   writer.write(group + "gross", balance_.gross);
 }
 
-void ScalarTransport::load(core::CheckpointReader& reader, const GasFields& fields) {
+void ScalarTransport::load(core::CheckpointReader& reader, const GasFields& fields,
+                           const ScalarTransport* vapour) {
   const std::string group = "gas/" + name_ + "/";
   reader.read_into(group + "excess", excess_);
   balance_.initial = reader.read_double(group + "initial");
@@ -83,7 +84,8 @@ void ScalarTransport::load(core::CheckpointReader& reader, const GasFields& fiel
   balance_.leftover = reader.read_double(group + "leftover");
   balance_.gross = reader.read_double(group + "gross");
   publish();
-  update_stock(fields);
+  compute_content(fields, vapour);
+  update_stock();
 }
 
 }  // namespace pellicle::cfd

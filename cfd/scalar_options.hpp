@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <variant>
 
@@ -30,11 +31,14 @@ struct Surroundings {
 };
 using ScalarBoundary = std::variant<Insulated, GivenValue, Surroundings>;
 
-/// One scalar. Temperature in kelvin; moisture is the mass fraction of vapour. Properties are constants of the run;
-/// those that depend on temperature and moisture would become cell fields in ScalarTransport::prepare.
+/// One scalar. Temperature in kelvin; moisture is the mass fraction of vapour.
 struct ScalarOptions {
-  Real capacity = 1;      ///< amount per mass of gas and value: c_p [J/kg/K]; 1 for the moisture
-  Real conductivity = 0;  ///< k [W/m/K]; density times diffusivity for the moisture [kg/m/s]
+  Real capacity = 1;  ///< amount per mass of gas and value: c_p [J/kg/K]; 1 for the moisture
+  /// The same of vapour, where it differs and moisture is solved; `capacity` then is that of dry gas.
+  std::optional<Real> vapour_capacity;
+  Real conductivity = 0;  ///< k [W/m/K]
+  Real diffusivity =
+      0;  ///< D of what diffuses relative to the gas: adds density D to the conductivity [m2/s]
   Real initial = 0;
   Real reference = 0;      ///< amounts count from here, and the equation is solved for the difference
   Real tolerance = 1e-12;  ///< of the linear solves, relative
@@ -43,6 +47,8 @@ struct ScalarOptions {
 };
 
 /// What the particles give to the gas, per volume of cell and second: rate - coefficient value. Empty arrays: nothing.
+/// The rate counts from the reference, and what comes with ParticleExchange::mass_source is part of it: c_p,vapour
+/// (T_vapour - reference) a kilogram for heat, and 1 for vapour (whose reference is 0).
 struct ScalarSource {
   HostArray<Real> rate;         ///< [W/m3]; [kg/m3/s]
   HostArray<Real> coefficient;  ///< >= 0, taken implicitly [W/m3/K]; [kg/m3/s]

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -22,13 +23,13 @@ HostArray<Real> make_array(const std::string& label, Index size) {
 
 ScalarTransport::ScalarTransport(std::string name, const FlowGeometry& geometry, const Boundaries& boundaries,
                                  const std::vector<ScalarBoundary>& patches, const ScalarOptions& options,
-                                 Convection scheme, Real density)
+                                 Convection scheme)
     : name_(std::move(name)),
       geometry_(geometry),
       boundaries_(boundaries),
       options_(options),
       scheme_(scheme),
-      density_(density),
+      carrier_(make_face_field(geometry.stencil, "cfd::scalar_transport::carrier")),
       conductance_(make_face_field(geometry.stencil, "cfd::scalar_transport::conductance")),
       correction_(make_face_field(geometry.stencil, "cfd::scalar_transport::correction")),
       linear_solver_(geometry.stencil.cells()) {
@@ -39,6 +40,10 @@ ScalarTransport::ScalarTransport(std::string name, const FlowGeometry& geometry,
   own_ = make_array("cfd::scalar_transport::own", n);
   base_ = make_array("cfd::scalar_transport::base", n);
   storage_ = make_array("cfd::scalar_transport::storage", n);
+  content_ = make_array("cfd::scalar_transport::content", n);
+  content_old_ = make_array("cfd::scalar_transport::content_old", n);
+  gain_ = make_array("cfd::scalar_transport::gain", n);
+  carrier_out_.assign(boundaries.pieces.size(), 0);
   rhs_ = make_array("cfd::scalar_transport::rhs", n);
   flagged_.assign(static_cast<std::size_t>(n), 0);
   for (std::size_t d = 0; d < 6; ++d) {
@@ -51,6 +56,7 @@ ScalarTransport::ScalarTransport(std::string name, const FlowGeometry& geometry,
   }
   balance_.into.assign(patches.size(), 0);
   check(patches);
+  set_values();
 }
 
 void ScalarTransport::check(const std::vector<ScalarBoundary>& patches) const {
@@ -58,7 +64,11 @@ void ScalarTransport::check(const std::vector<ScalarBoundary>& patches) const {
     throw InputError(fmt::format("gas: {}: {}", name_, what));
   };
   if (!(options_.capacity > 0)) refuse("the heat capacity is not positive; allowed: > 0 J/kg/K");
+  if (!(options_.vapour_capacity.value_or(1) > 0)) {
+    refuse("the heat capacity of vapour is not positive; allowed: > 0 J/kg/K");
+  }
   if (!(options_.conductivity >= 0)) refuse("the conductivity is negative; allowed: at least 0");
+  if (!(options_.diffusivity >= 0)) refuse("the diffusivity is negative; allowed: at least 0");
   if (!std::isfinite(options_.initial) || !std::isfinite(options_.reference)) {
     refuse("the initial or the reference value is no finite number; allowed: a number");
   }
@@ -78,37 +88,46 @@ void ScalarTransport::check(const std::vector<ScalarBoundary>& patches) const {
   }
 }
 
-void ScalarTransport::initialise(const GasFields& fields) {
-  HostArray<Real> uniform("cfd::scalar_transport::uniform", value_.extent(0));
-  Kokkos::deep_copy(uniform, options_.initial);
-  initialise(fields, uniform);
+void ScalarTransport::set_values() {
+  Kokkos::deep_copy(excess_, options_.initial - options_.reference);
+  publish();
 }
 
-void ScalarTransport::initialise(const GasFields& fields, const HostArray<Real>& value) {
+void ScalarTransport::set_values(const HostArray<Real>& value) {
   if (value.extent(0) != value_.extent(0)) {
     throw std::invalid_argument("the initial scalar has another size than the gas grid");
   }
   for (std::size_t c = 0; c < value.extent(0); ++c) excess_(c) = value(c) - options_.reference;
   publish();
+}
+
+void ScalarTransport::initialise(const GasFields& fields, const ScalarTransport* vapour) {
+  compute_content(fields, vapour);
   balance_ = ScalarBalance{};
   balance_.into.assign(boundaries_.patch_names.size(), 0);
-  update_stock(fields);
+  update_stock();
   balance_.initial = balance_.stock;
+}
+
+Real ScalarTransport::conductivity(const GasFields& fields, Index c) const {
+  return fields.void_fraction(c) * (options_.conductivity + fields.density(c) * options_.diffusivity);
 }
 
 // Half cells in series, as drag and pressure are at the faces: at a jump of eps the gas-poor side decides.
 void ScalarTransport::prepare(const GasFields& fields) {
   const char* labels[] = {"cfd::scalar_transport::prepare_x", "cfd::scalar_transport::prepare_y",
                           "cfd::scalar_transport::prepare_z"};
-  const Real* eps = fields.void_fraction.data();
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const AxisMetrics& metrics = geometry_.axis[a];
     for_faces(labels[a], geometry_.stencil, axis, [&](Index f, Index m, Index p, Index position, Index) {
       const auto at = static_cast<std::size_t>(position);
       const Real wm = metrics.series_minus[at];
-      const Real eps_f = 1 / (wm / eps[m] + (1 - wm) / eps[p]);
-      conductance_[a](f) = options_.conductivity * eps_f * geometry_.area[a](f) / geometry_.distance[a](f);
+      const Real minus = conductivity(fields, m);
+      const Real plus = conductivity(fields, p);
+      const Real both = wm * plus + (1 - wm) * minus;
+      const Real series = both > 0 ? minus * plus / both : 0;
+      conductance_[a](f) = series * geometry_.area[a](f) / geometry_.distance[a](f);
     });
     copy_periodic_faces(geometry_.stencil, axis, conductance_[a]);
   }
@@ -117,12 +136,12 @@ void ScalarTransport::prepare(const GasFields& fields) {
 ScalarTransport::PieceTerms ScalarTransport::piece_terms(const GasFields& fields, std::size_t b) const {
   const BoundaryPiece& piece = boundaries_.pieces[b];
   const ScalarBoundary& condition = piece_conditions_[b];
-  const Real half = options_.conductivity * fields.void_fraction(piece.cell) * piece.area / piece.half_width;
+  const Real half = conductivity(fields, piece.cell) * piece.area / piece.half_width;
   PieceTerms terms;
   if (const auto* given = std::get_if<GivenValue>(&condition)) {
     terms.given = given->value - options_.reference;
     const bool open = piece.kind == PieceKind::inlet || piece.kind == PieceKind::outlet;
-    if (open) terms.inflow = options_.capacity * density_ * std::max(-fields.piece_flow[b], Real{0});
+    if (open) terms.inflow = std::max(-carrier_out_[b], Real{0});
     // Through an open face nothing is conducted against gas that leaves, nor through an outlet.
     if (!open || (piece.kind == PieceKind::inlet && terms.inflow > 0)) terms.conductance = half;
   }
@@ -144,8 +163,7 @@ void ScalarTransport::set_boundary_values(const GasFields& fields) {
     const Real share = piece.area / geometry_.area[static_cast<std::size_t>(piece.axis)](piece.face);
     // How far the face's value is from the cell's towards the given one.
     Real towards = terms.inflow > 0 ? 1 : 0;
-    const Real half =
-        options_.conductivity * fields.void_fraction(piece.cell) * piece.area / piece.half_width;
+    const Real half = conductivity(fields, piece.cell) * piece.area / piece.half_width;
     if (terms.conductance > 0) towards = terms.conductance / half;
     FaceOfBoundary& value = boundary_values_[side][static_cast<std::size_t>(piece.place)];
     value.fixed += share * towards * terms.given;
@@ -160,10 +178,9 @@ void ScalarTransport::assemble(const GasFields& fields, Real dt, const ScalarSou
   const Real* volume = geometry_.volume.data();
   for_entries("cfd::scalar_transport::storage", s.cells(), [&](Index c) {
     // A cell without gas keeps its value.
-    const Real inertia =
-        volume[c] > 0 ? options_.capacity * density_ * fields.void_fraction_old(c) * volume[c] / dt : 1;
+    const Real inertia = volume[c] > 0 ? content_old_(c) / dt : 1;
     const Real taken = sources ? volume[c] * source.coefficient(c) : 0;
-    storage_(c) = inertia + taken;
+    storage_(c) = inertia + taken + gain_(c);
     base_(c) = inertia * old_(c);
     if (sources) base_(c) += volume[c] * source.rate(c) - taken * options_.reference;
   });
@@ -177,9 +194,8 @@ void ScalarTransport::assemble(const GasFields& fields, Real dt, const ScalarSou
       for (Index i = 0; i < s.n.x; ++i) {
         const Index c = row.cell + i;
         const Index f = first[axis] + i;
-        const Real minus = options_.capacity * std::max(fields.mass_flux[a](f), Real{0}) + conductance_[a](f);
-        const Real plus =
-            options_.capacity * std::max(-fields.mass_flux[a](f + step), Real{0}) + conductance_[a](f + step);
+        const Real minus = std::max(carrier_[a](f), Real{0}) + conductance_[a](f);
+        const Real plus = std::max(-carrier_[a](f + step), Real{0}) + conductance_[a](f + step);
         near_[2 * a](c) = minus;
         near_[2 * a + 1](c) = plus;
         own_(c) += minus + plus;
@@ -195,7 +211,7 @@ void ScalarTransport::assemble(const GasFields& fields, Real dt, const ScalarSou
 }
 
 template <Convection scheme>
-void ScalarTransport::compute_correction(const GasFields& fields) {
+void ScalarTransport::compute_correction() {
   const char* labels[] = {"cfd::scalar_transport::correction_x", "cfd::scalar_transport::correction_y",
                           "cfd::scalar_transport::correction_z"};
   const Stencil& s = geometry_.stencil;
@@ -203,7 +219,7 @@ void ScalarTransport::compute_correction(const GasFields& fields) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     for_faces(labels[a], s, axis, [&](Index f, Index minus, Index plus, Index position, Index place) {
-      const Real flux = options_.capacity * fields.mass_flux[a](f);
+      const Real flux = carrier_[a](f);
       const bool forward = flux >= 0;
       const FaceNeighbours near = find_neighbours(geometry_, axis, forward, f, minus, plus, position);
       const Real central = v[near.central];
@@ -221,18 +237,18 @@ void ScalarTransport::compute_correction(const GasFields& fields) {
   }
 }
 
-void ScalarTransport::compute_correction(const GasFields& fields) {
+void ScalarTransport::compute_correction() {
   switch (scheme_) {
     case Convection::upwind:
       break;
     case Convection::ultimate_quickest:
-      compute_correction<Convection::ultimate_quickest>(fields);
+      compute_correction<Convection::ultimate_quickest>();
       break;
     case Convection::central:
-      compute_correction<Convection::central>(fields);
+      compute_correction<Convection::central>();
       break;
     case Convection::quick:
-      compute_correction<Convection::quick>(fields);
+      compute_correction<Convection::quick>();
       break;
   }
 }
@@ -290,35 +306,31 @@ TransportReport ScalarTransport::solve() {
   return report;
 }
 
-// The discrete maximum principle: a value lies between those that the cells had before, those at the boundaries, and
-// those that the sources drive to; a source without such a value moves the bounds by what it does to a cell alone.
+// The discrete maximum principle: a value lies between those at the boundaries and those that the cells would get from
+// what they had and from their sources alone.
 ScalarTransport::Bounds ScalarTransport::find_bounds(const GasFields& fields, Real dt,
                                                      const ScalarSource& source) const {
-  Bounds bounds{old_(0), old_(0)};
+  const bool sources = source.rate.extent(0) > 0;
+  const auto alone = [&](Index c) {
+    Real amount = content_old_(c) / dt * old_(c);
+    if (sources) {
+      amount += geometry_.volume(c) * (source.rate(c) - source.coefficient(c) * options_.reference);
+    }
+    return amount / storage_(c);
+  };
+  Bounds bounds{std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity()};
   const auto include = [&](Real v) {
     bounds.low = std::min(bounds.low, v);
     bounds.high = std::max(bounds.high, v);
   };
-  const Index n = geometry_.stencil.cells();
-  for (Index c = 0; c < n; ++c) include(old_(c));
+  for (Index c = 0; c < geometry_.stencil.cells(); ++c) {
+    if (geometry_.volume(c) > 0) include(alone(c));
+  }
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const PieceTerms terms = piece_terms(fields, b);
     if (terms.inflow + terms.conductance > 0) include(terms.given);
   }
-  if (source.rate.extent(0) == 0) return bounds;
-  Real rise = 0, fall = 0;
-  for (Index c = 0; c < n; ++c) {
-    const Real taken = source.coefficient(c);
-    const Real rate = source.rate(c) - taken * options_.reference;
-    if (taken > 0) {
-      include(rate / taken);
-    } else {
-      const Real change = rate * dt / (options_.capacity * density_ * fields.void_fraction_old(c));
-      rise = std::max(rise, change);
-      fall = std::min(fall, change);
-    }
-  }
-  return {bounds.low + fall, bounds.high + rise};
+  return bounds;
 }
 
 // Flags the cells that are out of bounds; returns how many were not flagged before.
@@ -328,7 +340,8 @@ int ScalarTransport::flag_cells_beyond(const Bounds& bounds) {
   int found = 0;
   for (Index c = 0; c < geometry_.stencil.cells(); ++c) {
     auto& flag = flagged_[static_cast<std::size_t>(c)];
-    if (flag == 0 && (excess_(c) < bounds.low - slack || excess_(c) > bounds.high + slack)) {
+    if (flag == 0 && geometry_.volume(c) > 0 &&
+        (excess_(c) < bounds.low - slack || excess_(c) > bounds.high + slack)) {
       flag = 1;
       ++found;
     }
@@ -363,12 +376,14 @@ void ScalarTransport::stay_within_bounds(const Bounds& bounds, ScalarReport& rep
   }
 }
 
-ScalarReport ScalarTransport::update(const GasFields& fields, Real dt, const ScalarSource& source) {
+ScalarReport ScalarTransport::update(const GasFields& fields, Real dt, const ScalarSource& source,
+                                     const ScalarTransport* vapour) {
   if (source.rate.extent(0) != source.coefficient.extent(0) ||
       (source.rate.extent(0) > 0 && source.rate.extent(0) != value_.extent(0))) {
     throw std::invalid_argument("the scalar's source has another size than the gas grid");
   }
   Kokkos::deep_copy(old_, excess_);
+  prepare_carrier(fields, vapour);
   prepare(fields);
   set_boundary_values(fields);
   assemble(fields, dt, source);
@@ -379,7 +394,7 @@ ScalarReport ScalarTransport::update(const GasFields& fields, Real dt, const Sca
   bool done = false;
   while (!done) {
     Kokkos::deep_copy(before, excess_);
-    compute_correction(fields);
+    compute_correction();
     report.iterations += solve().iterations;
     ++report.solves;
     Real change = 0;
@@ -396,8 +411,9 @@ ScalarReport ScalarTransport::update(const GasFields& fields, Real dt, const Sca
 // The balance of what was exchanged, and the value once more in flux form: what the linear solve leaves would add up
 // in the balance over many steps.
 void ScalarTransport::finish(const GasFields& fields, Real dt, const ScalarSource& source) {
+  if (!flux_out_.empty()) compute_flux(fields);
   add_boundaries_to_balance(fields, dt);
-  add_leftover_to_balance(fields, dt);
+  add_leftover_to_balance(dt);
   Real* residual = linear_solver_.right_side().data();
   apply("cfd::scalar_transport::residual", excess_.data(),
         [&](Index c, Real near) { residual[c] = rhs_(c) + near - own_(c) * excess_(c); });
@@ -414,7 +430,7 @@ void ScalarTransport::finish(const GasFields& fields, Real dt, const ScalarSourc
         dt * sum_("cfd::scalar_transport::gross", n, [&](Index c) { return std::abs(given(c)); });
   }
   publish();
-  update_stock(fields);
+  update_stock();
   for (Index c = 0; c < n; ++c) {
     if (std::isfinite(value_(c))) continue;
     const Index3 at = geometry_.grid.coordinates(c);

@@ -1,6 +1,7 @@
 // Fluxes that satisfy continuity to round-off, for tests of what the gas carries without the gas solver.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ class PrescribedFlow {
         density(gas_density) {
     Kokkos::deep_copy(fields.void_fraction, 1.0);
     Kokkos::deep_copy(fields.void_fraction_old, 1.0);
+    Kokkos::deep_copy(fields.density, density);
+    Kokkos::deep_copy(fields.density_old, density);
+    std::fill(fields.piece_density.begin(), fields.piece_density.end(), density);
   }
 
   /// Sets the flow: flow_through(axis, i, j, k) is the volume flow along +axis through a face [m3/s].

@@ -26,9 +26,9 @@ class CarryingBed {
         gas_(solver_.grid(), make_patches(), density),
         temperature("temperature", gas_.geometry, gas_.boundaries,
                     {GivenValue{inlet_value}, GivenValue{inlet_value}, Insulated{}},
-                    make_options(1005, 0.026, initial, reference), scheme, density),
+                    make_options(1005, 0.026, initial, reference), scheme),
         moisture("moisture", gas_.geometry, gas_.boundaries, {GivenValue{0.9}, GivenValue{0.0}, Insulated{}},
-                 make_options(1, density * 2.5e-5, 0.01, 0), scheme, density) {
+                 make_options(1, density * 2.5e-5, 0.01, 0), scheme) {
     set_particles(0);
     solver_.initialise(Vec3{0, 0, 1.5}, exchange_.void_fraction);
     take_fields();
@@ -152,7 +152,7 @@ TEST(Scalars, SourcesHeatTheirCell) {
   options.initial = 300;
   options.reference = 280;
   ScalarTransport scalar("temperature", gas.geometry, gas.boundaries, {}, options,
-                         Convection::ultimate_quickest, 1.2);
+                         Convection::ultimate_quickest);
   scalar.initialise(gas.fields);
   ScalarSource source{HostArray<Real>("tests::rate", 3), HostArray<Real>("tests::coefficient", 3)};
   source.rate(0) = 6000;
@@ -179,7 +179,7 @@ TEST(Scalars, BackflowBringsWhatIsGiven) {
     options.initial = 0.5;
     const ScalarBoundary outlet = given ? ScalarBoundary{GivenValue{0.2}} : ScalarBoundary{Insulated{}};
     ScalarTransport scalar("moisture", gas.geometry, gas.boundaries, {Insulated{}, outlet}, options,
-                           Convection::upwind, 1.2);
+                           Convection::upwind);
     scalar.initialise(gas.fields);
     for (int step = 0; step < 100; ++step) scalar.update(gas.fields, 1, {});
     for (Index c = 0; c < 4; ++c) EXPECT_NEAR(scalar.value()(c), given ? 0.2 : 0.5, 1e-9);
@@ -222,8 +222,7 @@ TEST(Scalars, BadOptionsAreRefused) {
   const PrescribedFlow gas = make_plug_flow(4, 4, 1, 1.2);
   const auto refused = [&](const ScalarOptions& options, const std::vector<ScalarBoundary>& conditions) {
     try {
-      ScalarTransport("temperature", gas.geometry, gas.boundaries, conditions, options, Convection::upwind,
-                      1.2);
+      ScalarTransport("temperature", gas.geometry, gas.boundaries, conditions, options, Convection::upwind);
     } catch (const InputError& error) {
       return std::string(error.what());
     }

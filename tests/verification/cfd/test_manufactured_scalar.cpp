@@ -55,7 +55,7 @@ class Marcher {
         gas_(make_square(march.cells, carried.setting.plane, march.stretched, carried.setting.periodic),
              carried.setting.patches, density),
         scalar_("temperature", gas_.geometry, gas_.boundaries, carried.conditions, make_options(),
-                march.scheme, density) {
+                march.scheme) {
     const std::size_t n = static_cast<std::size_t>(gas_.fields.cells);
     source_ = {HostArray<Real>("tests::manufactured::rate", n),
                HostArray<Real>("tests::manufactured::coefficient", n)};
@@ -63,7 +63,8 @@ class Marcher {
     HostArray<Real> initial("tests::manufactured::initial", n);
     set_void_fraction(gas_.fields.void_fraction, 0);
     for_cells([&](Index c, Real a, Real b) { initial(c) = carried_.at(a, b, 0).v; });
-    scalar_.initialise(gas_.fields, initial);
+    scalar_.set_values(initial);
+    scalar_.initialise(gas_.fields);
     for (int step = 0; step < march.steps; ++step) advance(step * march.dt);
   }
 

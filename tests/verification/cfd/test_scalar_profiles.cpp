@@ -27,7 +27,7 @@ Front carry_step(Convection scheme, Real courant) {
   PrescribedFlow gas = make_plug_flow(cells, cells, 1, 1.2);
   ScalarOptions options;
   ScalarTransport scalar("moisture", gas.geometry, gas.boundaries, {GivenValue{1}, Insulated{}}, options,
-                         scheme, gas.density);
+                         scheme);
   scalar.initialise(gas.fields);
   Front front;
   const auto variance = [&] {
@@ -103,7 +103,7 @@ TEST(ScalarProfile, ConvectionConductionAndSink) {
     options.correction_tolerance = 1e-12;
     options.max_corrections = 100;
     ScalarTransport scalar("temperature", gas.geometry, gas.boundaries, {GivenValue{1}, Insulated{}}, options,
-                           Convection::quick, density);
+                           Convection::quick);
     scalar.initialise(gas.fields);
     const auto n = static_cast<std::size_t>(cells);
     ScalarSource source{HostArray<Real>("tests::rate", n), HostArray<Real>("tests::coefficient", n)};
@@ -153,7 +153,7 @@ TEST(ScalarProfile, SlabCooledThroughItsWall) {
     options.reference = 290;
     ScalarTransport scalar("temperature", gas.geometry, gas.boundaries,
                            {Surroundings{cold, biot * eps * k / length}}, options,
-                           Convection::ultimate_quickest, density);
+                           Convection::ultimate_quickest);
     scalar.initialise(gas.fields);
     for (int step = 0; step < steps; ++step) scalar.update(gas.fields, time / steps, {});
     EXPECT_LT(scalar.balance().defect(), 1e-13);
