@@ -36,6 +36,11 @@ inline constexpr Dimension surface_tension{"a surface tension", "N/m", "72 mN/m"
 inline constexpr Dimension stiffness{"a stiffness", "N/m", "1 kN/m"};
 inline constexpr Dimension force_per_volume{"a force per volume", "N/m3", "5 N/m3"};
 inline constexpr Dimension temperature{"a temperature", "K", "80 degC"};
+inline constexpr Dimension heat_capacity{"a heat capacity", "J/kg/K", "1 kJ/kg/K"};
+inline constexpr Dimension heat_conductivity{"a heat conductivity", "W/m/K", "26 mW/m/K"};
+inline constexpr Dimension diffusivity{"a diffusivity", "m2/s", "26 mm2/s"};
+inline constexpr Dimension heat_transfer{"a heat transfer coefficient", "W/m2/K", "5 W/m2/K"};
+inline constexpr Dimension thermal_expansion{"a thermal expansion coefficient", "1/K", "3.4e-3 1/K"};
 }  // namespace dimension
 
 /// A quantity that cannot be used; the message reads `what is wrong; what is allowed`, without a place.

@@ -79,6 +79,38 @@ gas:
     faces: {x: [0, 0.5, 1], y: [0, 0.1, 0.4, 1], z: [0, 1]}
 )";
 
+/// Gas that is warm and moist, of a density and viscosity that follow.
+inline constexpr const char* humid_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1], periodic: [x]}
+time: {end: 1, gas_step: 0.01}
+gas:
+  density: {law: ideal_gas}
+  viscosity: {law: sutherland}
+  reference_pressure: "1 bar"
+  heat: {initial_temperature: "20 degC", capacity: "1 kJ/kg/K", vapour_capacity: 1900, conductivity: "30 mW/m/K",
+         reference_temperature: "0 degC"}
+  moisture: {initial_relative_humidity: 0.5, diffusivity: "30 mm2/s"}
+  grid: {cells: [2, 3, 4]}
+  boundaries:
+    - {name: below, on: bottom, inlet: {velocity: 1, temperature: "80 degC", relative_humidity: "10 %"}}
+    - {name: above, on: top, outlet: {pressure: 0, temperature: "25 degC", vapour_mass_fraction: 0.01}}
+    - {name: hot, on: front, wall: {temperature: "100 degC"}}
+    - {name: jacket, on: back, wall: {heat_transfer: {coefficient: "5 W/m2/K", temperature: "15 degC"}}}
+)";
+
+/// Warm gas of constant density that rises, dry.
+inline constexpr const char* rising_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
+time: {end: 1, gas_step: 0.01}
+gas:
+  density: 1.2
+  viscosity: 1.8e-5
+  heat: {initial_temperature: 300, buoyancy: {temperature: 310, expansion: "3e-3 1/K"}}
+  moisture: {initial_vapour_mass_fraction: 0.02}
+  grid: {cells: [2, 3, 4]}
+  boundaries:
+    - {name: damp, on: left, inlet: {velocity: 0.1, temperature: 320, vapour_mass_fraction: 0.03}}
+    - {name: out, on: right, outlet: {temperature: 300, relative_humidity: 0.5}}
+)";
+
 /// A plane flow: cells from sizes and zones.
 inline constexpr const char* refined_case =
     R"(domain: {min: [0, 0, 0], max: ["100 mm", "5 mm", "200 mm"], periodic: [z]}

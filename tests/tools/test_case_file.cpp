@@ -128,8 +128,8 @@ TEST(CaseFile, DefaultsFollowFromOtherKeys) {
 }
 
 TEST(CaseFile, ResolvedFileGivesTheSameCase) {
-  for (const char* text : {spouted_bed_case, channel_case, refined_case, chamber_case, powders_case,
-                           vessel_case, two_particles_case}) {
+  for (const char* text : {spouted_bed_case, channel_case, humid_case, rising_case, refined_case,
+                           chamber_case, powders_case, vessel_case, two_particles_case}) {
     const CaseSpec spec = parse_case(text, "some_case.yaml");
     const std::string resolved = resolved_yaml(spec);
     const CaseSpec again = parse_case(resolved, "another_name.yaml");
@@ -175,6 +175,8 @@ TEST(CaseFile, TheTestsCoverEveryKey) {
   EXPECT_GT(paths.size(), 100u);
   std::map<std::string, std::string> given = parse_case(spouted_bed_case, "c.yaml").lines;
   given.merge(std::map(parse_case(channel_case, "c.yaml").lines));
+  given.merge(std::map(parse_case(humid_case, "c.yaml").lines));
+  given.merge(std::map(parse_case(rising_case, "c.yaml").lines));
   given.merge(std::map(parse_case(refined_case, "c.yaml").lines));
   given.merge(std::map(parse_case(chamber_case, "c.yaml").lines));
   given.merge(std::map(parse_case(powders_case, "c.yaml").lines));

@@ -96,6 +96,22 @@ class Plots(unittest.TestCase):
         done = run("bed_image.py", results, "--frames", "2", "-o", self.folder / "bed.png")
         self.assertIn("t = 0.1, 0.2 s", done.stdout)
 
+    def test_gas_image(self):
+        results = self.folder / "gas"
+        results.mkdir()
+        write_snapshots(results)
+        picture = self.folder / "gas.png"
+        done = run("gas_image.py", results, "--field", "void_fraction", "--time", "0.1", "-o", picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("void_fraction from 0.5 to 0.5", done.stdout)
+        self.assertGreater(picture.stat().st_size, 5000)
+        done = run("gas_image.py", results, "--field", "speed", "--axis", "z", "--at", "0.035", "-o", picture)
+        self.assertIn("speed from 1 to 1", done.stdout)
+        done = run("gas_image.py", results, "--field", "heat", "-o", picture)
+        self.assertIn("no field heat; void_fraction, speed", done.stderr)
+        done = run("gas_image.py", results, "--field", "speed", "--at", "1", "-o", picture)
+        self.assertIn("0 to 0.02 m", done.stderr)
+
     def test_series(self):
         results = self.folder / "series"
         (results / "probes").mkdir(parents=True)

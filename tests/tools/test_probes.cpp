@@ -24,6 +24,8 @@ struct Gas {
   HostArray<Vec3> velocity{"test::velocity", 8};
   HostArray<Real> pressure{"test::pressure", 8};
   HostArray<Real> void_fraction{"test::void_fraction", 8};
+  HostArray<Real> density{"test::density", 8};
+  HostArray<Real> temperature{"test::temperature", 8};
   GasFields fields;
   Gas() {
     for (Index c = 0; c < 8; ++c) {
@@ -31,12 +33,15 @@ struct Gas {
       velocity(c) = {1.0 * c, 0, 1};
       pressure(c) = 100.0 * at.z + at.x;
       void_fraction(c) = 0.5;
+      density(c) = 1.2;
+      temperature(c) = 300 + c;
     }
     fields.grid = &grid;
     fields.velocity = velocity;
     fields.pressure = pressure;
     fields.void_fraction = void_fraction;
-    fields.density = 1.2;
+    fields.density = density;
+    fields.temperature = temperature;
   }
 };
 
@@ -55,15 +60,16 @@ TEST(Probes, PointShowsItsCell) {
   const ResultsFolder results(folder / "r", ResultsFolder::Existing::refuse);
   core::TimeControl time(1, 0.1, 0.1);
   const Gas gas;
-  ProbeSpec spec = named("tap", {"pressure", "gas_velocity_x", "superficial_velocity_z"});
+  ProbeSpec spec = named(
+      "tap", {"pressure", "gas_velocity_x", "superficial_velocity_z", "gas_temperature", "gas_density"});
   spec.point = Vec3{0.7, 0.5, 0.3};  // column 1, layer 3: cell 7
   spec.every = 0.2;
   Probes probes({spec}, time, results, box, &gas.grid, std::nullopt);
   for (int step = 0; step <= 5; ++step) probes.sample({.step = step, .time = 0.1 * step, .gas = &gas.fields});
   probes.flush();
   EXPECT_EQ(core::read_file(results.csv("probes", "tap")),
-            "time [s],pressure [Pa],gas_velocity_x [m/s],superficial_velocity_z [m/s]\n"
-            "0,301,7,0.5\n0.2,301,7,0.5\n0.4,301,7,0.5\n");
+            "time [s],pressure [Pa],gas_velocity_x [m/s],superficial_velocity_z [m/s],gas_temperature [K],"
+            "gas_density [kg/m3]\n0,301,7,0.5,307,1.2\n0.2,301,7,0.5,307,1.2\n0.4,301,7,0.5,307,1.2\n");
 }
 
 TEST(Probes, ParticleIsFoundWhereverItIs) {

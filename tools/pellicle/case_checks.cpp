@@ -48,6 +48,9 @@ class Checker {
     if (spec_.gas && !spec_.particles.empty()) check_coupling();
     for (const auto& line : spec_.output.lines) check_line(line);
     for (const auto& probe : spec_.output.probes) check_probe(probe);
+    for (const auto& field : spec_.output.snapshots.gas) {
+      if (spec_.gas) check_carried(": output.snapshots", "gas", field);
+    }
     for (const auto& histogram : spec_.output.histograms) {
       if (spec_.particles.empty())
         wrong(histogram.where, "quantity", "a case without particles has none; no histograms");
@@ -365,10 +368,23 @@ class Checker {
       wrong(where, key,
             fmt::format("{} needs gas, which the case has not; {}", name,
                         core::allowed_names(particle_quantities)));
+    if (of_gas && spec_.gas) check_carried(where, key, name);
     if (!of_gas && spec_.particles.empty()) {
       wrong(where, key,
             fmt::format("{} needs particles, which the case has not; {}", name,
                         core::allowed_names(gas_quantities)));
+    }
+  }
+
+  /// Temperature and moisture are there only if the gas has them.
+  void check_carried(const std::string& where, std::string_view key, const std::string& name) {
+    const bool warm = name == "gas_temperature" || name == "temperature" || name == "relative_humidity";
+    const bool moist = name == "vapour_mass_fraction" || name == "relative_humidity";
+    if (warm && !spec_.gas->heat) {
+      wrong(where, key, fmt::format("{} needs a temperature of the gas; gas.heat, or another name", name));
+    }
+    if (moist && !spec_.gas->moisture) {
+      wrong(where, key, fmt::format("{} needs moisture of the gas; gas.moisture, or another name", name));
     }
   }
 
@@ -402,6 +418,9 @@ class Checker {
       if (!inside(*probe.point)) {
         wrong(probe.where, "point",
               fmt::format("{} m is outside the domain; {}", text(*probe.point), domain_text()));
+      }
+      for (const auto& name : probe.quantities) {
+        if (spec_.gas) check_carried(probe.where, "quantities", name);
       }
     } else if (spec_.particles.empty()) {
       wrong(probe.where, probe.bed ? "bed" : (probe.wall ? "wall" : (probe.side ? "side" : "particle")),

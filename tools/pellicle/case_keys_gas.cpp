@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/pellicle/case_keys.hpp"
+#include "tools/pellicle/case_keys_gas_heat.hpp"
 #include "tools/pellicle/model_families.hpp"
 
 namespace pellicle::tools {
@@ -28,6 +29,7 @@ struct BoundaryKinds {
   std::optional<cfd::NoSlip> wall;
   bool free_slip = false;
   bool symmetry = false;
+  CarriedKeys carried;
 };
 
 BoundaryKinds take_apart(const cfd::BoundaryPatch& patch) {
@@ -37,6 +39,7 @@ BoundaryKinds take_apart(const cfd::BoundaryPatch& patch) {
   if (const auto* wall = std::get_if<cfd::NoSlip>(&patch.kind)) kinds.wall = *wall;
   kinds.free_slip = std::holds_alternative<cfd::FreeSlip>(patch.kind);
   kinds.symmetry = std::holds_alternative<cfd::Symmetry>(patch.kind);
+  kinds.carried = take_carried_apart(patch.scalars);
   return kinds;
 }
 
@@ -46,6 +49,7 @@ void put_together(const BoundaryKinds& kinds, cfd::BoundaryPatch& patch) {
   if (kinds.wall) patch.kind = *kinds.wall;
   if (kinds.free_slip) patch.kind = cfd::FreeSlip{};
   if (kinds.symmetry) patch.kind = cfd::Symmetry{};
+  patch.scalars = put_carried_together(kinds.carried);
 }
 
 void describe_disc(Keys& keys, cfd::DiscRegion& disc) {
@@ -71,7 +75,7 @@ void check_inside(Keys& keys, const Vec3& point, const Box& box) {
   }
 }
 
-void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
+void describe_boundary(Keys& keys, const GasSpec& gas, cfd::BoundaryPatch& patch) {
   if (keys.reading()) patch.where = keys.where();
   keys.text({"name", "of the boundary", Need::required}, TextRule::name, patch.name);
   std::optional<int> on;
@@ -96,7 +100,7 @@ void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
 
   BoundaryKinds kinds = keys.reading() ? BoundaryKinds{} : take_apart(patch);
   keys.section<cfd::Inlet>({"inlet", "gas comes in at right angles to the side"}, kinds.inlet,
-                           [](Keys& inner, cfd::Inlet& inlet) {
+                           [&](Keys& inner, cfd::Inlet& inlet) {
                              inner.real({"velocity", "superficial, inward, over the open area"},
                                         {dimension::velocity, range::non_negative}, inlet.velocity);
                              inner.real({"flow_rate", "at the inlet's own temperature and pressure"},
@@ -107,14 +111,18 @@ void describe_boundary(Keys& keys, cfd::BoundaryPatch& patch) {
                              if (inner.reading() && inlet.velocity && inlet.share != 1) {
                                inner.problem("share", "there is no flow rate to share; only with flow_rate");
                              }
+                             describe_incoming_gas(inner, gas, true, kinds.carried);
                            });
-  keys.section<cfd::Outlet>({"outlet", "gas leaves"}, kinds.outlet, [](Keys& inner, cfd::Outlet& outlet) {
+  keys.section<cfd::Outlet>({"outlet", "gas leaves"}, kinds.outlet, [&](Keys& inner, cfd::Outlet& outlet) {
     inner.real({"pressure", "at the outlet, without its hydrostatic part"}, {dimension::pressure},
                outlet.pressure);
+    describe_incoming_gas(inner, gas, false, kinds.carried);
   });
-  keys.section<cfd::NoSlip>({"wall", "the gas sticks to it"}, kinds.wall, [](Keys& inner, cfd::NoSlip& wall) {
-    inner.vector({"velocity", "of the wall in its own plane"}, {dimension::velocity}, wall.velocity);
-  });
+  keys.section<cfd::NoSlip>(
+      {"wall", "the gas sticks to it"}, kinds.wall, [&](Keys& inner, cfd::NoSlip& wall) {
+        inner.vector({"velocity", "of the wall in its own plane"}, {dimension::velocity}, wall.velocity);
+        describe_wall_heat(inner, gas, kinds.carried);
+      });
   keys.mark({"free_slip", "a wall without shear"}, kinds.free_slip);
   keys.mark({"symmetry", "a plane of symmetry"}, kinds.symmetry);
   keys.exactly_one({"inlet", "outlet", "wall", "free_slip", "symmetry"});
@@ -149,10 +157,7 @@ void describe_solver(Keys& keys, cfd::GasSolverOptions& solver) {
 void describe_gas(Keys& keys, CaseSpec& spec) {
   keys.section<GasSpec>(
       {"gas", "the gas; without it the case is particles alone"}, spec.gas, [&](Keys& inner, GasSpec& gas) {
-        inner.real({"density", "of the gas", Need::required}, {dimension::density, range::positive},
-                   gas.options.density);
-        inner.real({"viscosity", "dynamic", Need::required}, {dimension::viscosity, range::positive},
-                   gas.options.viscosity);
+        describe_gas_properties(inner, gas);
         inner.vector({"velocity", "initial"}, {dimension::velocity}, gas.velocity);
         inner.vector({"inside", "a point in the gas, where walls divide the domain", Need::has_default,
                       "a point of the first inlet that has a region, else of the first inlet"},
@@ -166,7 +171,7 @@ void describe_gas(Keys& keys, CaseSpec& spec) {
                      cfd::convection_models, gas.options.convection);
         inner.list<cfd::BoundaryPatch>(
             {"boundaries", "regions on the sides; what none takes is a wall that the gas sticks to"}, {},
-            gas.boundaries, describe_boundary);
+            gas.boundaries, [&](Keys& k, cfd::BoundaryPatch& patch) { describe_boundary(k, gas, patch); });
         inner.section<cfd::GasSolverOptions>({"solver", "tolerances and limits"}, gas.options.solver,
                                              describe_solver);
         if (inner.reading()) gas.options.gravity = spec.gravity;

@@ -230,8 +230,34 @@ struct GridSpec {
   std::optional<RefinementSpec> refinement;  ///< what cells and faces follow from, if they do
 };
 
+/// Buoyancy of a gas of constant density.
+struct BuoyancySpec {
+  std::optional<Real> temperature;  ///< without buoyancy [K]; default: the initial one
+  std::optional<Real> expansion;    ///< [1/K]; default: 1 / temperature
+};
+
+/// Defaults: air at 300 K, and vapour in it at 298 K (Incropera & DeWitt, Fundamentals of Heat and Mass Transfer, 6th
+/// ed. 2007, tables A.4, A.6 and A.8).
+struct GasHeatSpec {
+  Real initial_temperature = 0;               ///< [K]
+  Real capacity = 1007;                       ///< of dry gas at constant pressure [J/kg/K]
+  Real vapour_capacity = 1872;                ///< [J/kg/K]
+  Real conductivity = 0.0263;                 ///< [W/m/K]
+  std::optional<Real> reference_temperature;  ///< from which the ledger counts [K]; default: the initial one
+  std::optional<BuoyancySpec> buoyancy;
+};
+
+struct GasMoistureSpec {
+  Real initial_vapour_mass_fraction = 0;
+  Real diffusivity = 2.6e-5;  ///< of vapour in the gas [m2/s]
+};
+
 struct GasSpec {
-  cfd::GasOptions options;     ///< gravity is that of the case
+  /// Gravity is that of the case. What follows from `heat` and `moisture` is filled in: the scalars, the density and
+  /// viscosity at the start of a gas that has laws for them.
+  cfd::GasOptions options;
+  std::optional<GasHeatSpec> heat;
+  std::optional<GasMoistureSpec> moisture;
   Vec3 velocity;               ///< initial [m/s]
   std::optional<Vec3> inside;  ///< a point in the gas, where walls divide the domain [m]
   GridSpec grid;

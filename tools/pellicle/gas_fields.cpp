@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "cfd/gas_property_laws.hpp"
 #include "tools/pellicle/output_fields.hpp"
 
 namespace pellicle::tools {
@@ -24,14 +25,25 @@ Real gas_quantity(const GasFields& gas, int quantity, Index cell) {
       return gas.void_fraction_of(cell);
     case 9:
       return 1 - gas.void_fraction_of(cell);
+    case 10:
+      return gas.temperature(cell);
+    case 11:
+      return gas.vapour_mass_fraction(cell);
+    case 12:
+      return cfd::relative_humidity_of(gas.vapour_mass_fraction(cell), gas.temperature(cell),
+                                       gas.reference_pressure);
+    case 13:
+      return gas.density(cell);
     default:
       break;
   }
   throw std::logic_error("a gas quantity without a value");
 }
-static_assert(gas_quantities.size() == 10 && gas_quantities[3].name == "gas_speed" &&
+static_assert(gas_quantities.size() == 14 && gas_quantities[3].name == "gas_speed" &&
                   gas_quantities[4].name == "superficial_velocity_x" &&
-                  gas_quantities[9].name == "solids_fraction",
+                  gas_quantities[9].name == "solids_fraction" &&
+                  gas_quantities[10].name == "gas_temperature" &&
+                  gas_quantities[12].name == "relative_humidity",
               "the codes above are positions in gas_quantities");
 
 Real pressure_drop(const GasFields& gas) {
@@ -57,7 +69,7 @@ Real gas_kinetic_energy(const GasFields& gas) {
     for (Index j = 0; j < n.y; ++j) {
       for (Index i = 0; i < n.x; ++i) {
         const Index cell = grid.index(i, j, k);
-        energy += 0.5 * gas.density * gas.void_fraction_of(cell) * norm_squared(gas.velocity(cell)) *
+        energy += 0.5 * gas.density(cell) * gas.void_fraction_of(cell) * norm_squared(gas.velocity(cell)) *
                   grid.volume(i, j, k);
       }
     }

@@ -16,7 +16,10 @@ struct GasFields {
   HostArray<const Real> pressure;           ///< without the hydrostatic part [Pa]
   HostArray<const Real> void_fraction;      ///< [-]
   HostArray<const Vec3> pressure_gradient;  ///< [Pa/m]
-  Real density = 0;                         ///< [kg/m3]
+  HostArray<const Real> density;            ///< [kg/m3]
+  HostArray<const Real> temperature;        ///< [K]
+  HostArray<const Real> vapour_mass_fraction;
+  Real reference_pressure = 0;  ///< absolute [Pa]
 
   Real void_fraction_of(Index cell) const { return void_fraction.extent(0) > 0 ? void_fraction(cell) : 1; }
 };

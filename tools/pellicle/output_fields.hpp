@@ -24,12 +24,15 @@ inline constexpr std::array<core::ModelInfo, 9> particle_snapshot_fields{{
 }};
 
 /// Fields of a gas snapshot (gas.h5), all at cell centres.
-inline constexpr std::array<core::ModelInfo, 5> gas_snapshot_fields{{
+inline constexpr std::array<core::ModelInfo, 8> gas_snapshot_fields{{
     {"velocity", "interstitial gas velocity, three components [m/s]"},
     {"pressure", "gas pressure without its hydrostatic part [Pa]"},
     {"void_fraction", "fraction of the cell that is gas [-]"},
     {"solids_fraction", "fraction of the cell that is particles [-]"},
     {"pressure_gradient", "gradient of the pressure, three components [Pa/m]"},
+    {"temperature", "gas temperature; needs gas.heat [K]"},
+    {"vapour_mass_fraction", "mass of vapour per mass of moist gas; needs gas.moisture [-]"},
+    {"density", "gas density [kg/m3]"},
 }};
 
 /// One number of one particle: what lines, histograms and particle probes can show. The position in this list is the
@@ -52,7 +55,7 @@ inline constexpr std::array<core::ModelInfo, 14> particle_quantities{{
 }};
 
 /// One number of one gas cell: what lines and point probes can show, in the order of GasQuantity.
-inline constexpr std::array<core::ModelInfo, 10> gas_quantities{{
+inline constexpr std::array<core::ModelInfo, 14> gas_quantities{{
     {"gas_velocity_x", "x component of the interstitial gas velocity [m/s]"},
     {"gas_velocity_y", "y component of the interstitial gas velocity [m/s]"},
     {"gas_velocity_z", "z component of the interstitial gas velocity [m/s]"},
@@ -63,6 +66,10 @@ inline constexpr std::array<core::ModelInfo, 10> gas_quantities{{
     {"pressure", "gas pressure without its hydrostatic part [Pa]"},
     {"void_fraction", "fraction of the volume that is gas [-]"},
     {"solids_fraction", "fraction of the volume that is particles [-]"},
+    {"gas_temperature", "temperature of the gas; needs gas.heat [K]"},
+    {"vapour_mass_fraction", "mass of vapour per mass of moist gas; needs gas.moisture [-]"},
+    {"relative_humidity", "vapour pressure over that of saturation; needs gas.heat and gas.moisture [-]"},
+    {"gas_density", "density of the gas [kg/m3]"},
 }};
 
 /// Columns of a bed probe.

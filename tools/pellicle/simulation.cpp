@@ -22,6 +22,10 @@ using core::Part;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
+/// What of the ledger the gas carries with it.
+constexpr std::pair<Conserved, cfd::Scalar> carried_by_gas[] = {{Conserved::energy, cfd::Scalar::temperature},
+                                                                {Conserved::water, cfd::Scalar::moisture}};
+
 }  // namespace
 
 void request_stop() noexcept { stop_requested = 1; }
@@ -267,6 +271,10 @@ void Simulation::release_gas() {
     for (WallFigures& wall : walls_) wall.impulse = wall.angular_impulse = Vec3{};
   }
   if (gas_) ledger_.open(Conserved::gas_mass, gas_->balance().mass_initial);
+  for (const auto& [quantity, scalar] : carried_by_gas) {
+    if (const auto* balance = gas_ ? gas_->balance(scalar) : nullptr)
+      ledger_.open(quantity, balance->initial);
+  }
   Vec3 momentum{};
   if (gas_) momentum += gas_->balance().momentum;
   if (particles_) momentum += particles_->compute_totals().momentum;
@@ -306,11 +314,18 @@ void Simulation::update_ledger() {
   if (gas_) {
     const cfd::GasBalance& gas = gas_->balance();
     ledger_.set_stock(Conserved::gas_mass, gas.mass);
-    ledger_.set_totals(Conserved::gas_mass, Vec3{gas.mass_in() - gas.mass_out(), 0, 0}, Vec3{},
-                       gas.mass_in() + gas.mass_out());
+    ledger_.set_totals(Conserved::gas_mass, Vec3{gas.mass_in() - gas.mass_out(), 0, 0},
+                       Vec3{gas.mass_given, 0, 0}, gas.mass_in() + gas.mass_out() + std::abs(gas.mass_given));
+    for (const auto& [quantity, scalar] : carried_by_gas) {
+      const cfd::ScalarBalance* carried = gas_->balance(scalar);
+      if (!carried) continue;
+      ledger_.set_stock(quantity, carried->stock);
+      ledger_.set_totals(quantity, Vec3{carried->through_boundaries(), 0, 0}, Vec3{carried->sources, 0, 0},
+                         carried->gross);
+    }
     stock += gas.momentum;
     through += gas.convected + gas.boundary_pressure + gas.boundary_shear;
-    sources += gas.body_force;
+    sources += gas.body_force + gas.vapour;
     gross += norm(gas.gross);
   }
   if (exchange_) {
@@ -366,8 +381,15 @@ void Simulation::write_outputs(bool last) {
   if (particles_) state.sides = &particles_->left_by_side();
   if (gas_) {
     const cfd::GasState& gas = gas_->state();
-    fields = {&gas_->grid(),     gas.velocity,          gas.pressure,
-              gas.void_fraction, gas.pressure_gradient, spec_.gas->options.density};
+    fields = {&gas_->grid(),
+              gas.velocity,
+              gas.pressure,
+              gas.void_fraction,
+              gas.pressure_gradient,
+              gas.density,
+              gas.scalars[index_of(cfd::Scalar::temperature)],
+              gas.scalars[index_of(cfd::Scalar::moisture)],
+              spec_.gas->options.reference_pressure};
     state.gas = &fields;
   }
   outputs_->sample(state, last);
@@ -438,6 +460,7 @@ void Simulation::write_summary(const std::string& status, const std::string& mes
       summary_.mass_fed += feed.fed_mass();
     }
   }
+  if (gas_) summary_.gas_boundaries = collect_gas_boundaries(*gas_);
   summary_.peak_memory_bytes = peak_memory_bytes();
   tools::write_summary(folder_->summary(), summary_);
 }

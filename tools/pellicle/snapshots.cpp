@@ -142,8 +142,13 @@ void write_gas_field(core::Hdf5File& file, const std::string& group, const std::
     shape.push_back(3);
     const auto& values = field == "velocity" ? gas.velocity : gas.pressure_gradient;
     file.write(name, std::span<const double>(&values.data()->x, 3 * count), shape);
-  } else if (field == "pressure") {
-    file.write(name, std::span<const double>(gas.pressure.data(), count), shape);
+  } else if (field == "pressure" || field == "temperature" || field == "vapour_mass_fraction" ||
+             field == "density") {
+    const auto& values = field == "pressure"      ? gas.pressure
+                         : field == "temperature" ? gas.temperature
+                         : field == "density"     ? gas.density
+                                                  : gas.vapour_mass_fraction;
+    file.write(name, std::span<const double>(values.data(), count), shape);
   } else if (field == "void_fraction" || field == "solids_fraction") {
     std::vector<double> values(count);
     for (std::size_t c = 0; c < count; ++c) {

@@ -89,6 +89,12 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
                                 {"angular_impulse", list(wall.angular_impulse)},
                                 {"contacts", wall.contacts}};
   }
+  for (const GasBoundaryFigures& boundary : summary.gas_boundaries) {
+    Json& figures = json["gas_boundaries"][boundary.name];
+    figures = {{"mass_in", boundary.mass_in}, {"mass_out", boundary.mass_out}};
+    if (boundary.heat_in) figures["heat_in"] = *boundary.heat_in;
+    if (boundary.vapour_in) figures["vapour_in"] = *boundary.vapour_in;
+  }
   json["mass_left"] = summary.mass_left;
   json["left_by_side"] = Json::object();
   for (std::size_t side = 0; side < summary.left_by_side.size(); ++side) {
@@ -143,6 +149,15 @@ Summary read_summary(const std::filesystem::path& path) {
           return Vec3{list.at(0), list.at(1), list.at(2)};
         };
         summary.walls.push_back({name, vector("impulse"), vector("angular_impulse"), wall.at("contacts")});
+      }
+    }
+    if (json.contains("gas_boundaries")) {
+      for (const auto& [name, figures] : json.at("gas_boundaries").items()) {
+        const auto optional = [&](const char* key) {
+          return figures.contains(key) ? std::optional<double>(figures.at(key)) : std::nullopt;
+        };
+        summary.gas_boundaries.push_back({name, figures.at("mass_in"), figures.at("mass_out"),
+                                          optional("heat_in"), optional("vapour_in")});
       }
     }
     summary.mass_left = json.at("mass_left");
@@ -202,6 +217,13 @@ std::string report_text(const Summary& summary) {
     if (summary.particles_fed > 0) {
       line("fed", fmt::format("{}, {:.4g} kg", summary.particles_fed, summary.mass_fed));
     }
+  }
+  for (const GasBoundaryFigures& boundary : summary.gas_boundaries) {
+    std::string figures =
+        fmt::format("{:.6g} kg of gas in, {:.6g} kg out", boundary.mass_in, boundary.mass_out);
+    if (boundary.heat_in) figures += fmt::format(", {:.6g} J of heat in", *boundary.heat_in);
+    if (boundary.vapour_in) figures += fmt::format(", {:.6g} kg of vapour in", *boundary.vapour_in);
+    line(fmt::format("boundary {}", boundary.name), figures);
   }
   for (std::size_t q = 0; q < summary.defects.size(); ++q) {
     if (summary.defects[q] == 0) continue;

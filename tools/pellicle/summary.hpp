@@ -10,6 +10,7 @@
 #include "core/ledger.hpp"
 #include "core/timers.hpp"
 #include "core/types.hpp"
+#include "tools/pellicle/gas_boundary_figures.hpp"
 #include "tools/pellicle/wall_figures.hpp"
 
 namespace pellicle::tools {
@@ -45,6 +46,7 @@ struct Summary {
   double mass_fed = 0;  ///< [kg]
   std::int64_t gas_steps = 0;
   std::vector<WallFigures> walls;  ///< what each wall received
+  std::vector<GasBoundaryFigures> gas_boundaries;
 
   /// Particles x substeps / (contacts + neighbours + motion), all threads; 0 without particles.
   double particle_steps_per_second() const;

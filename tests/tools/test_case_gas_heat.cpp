@@ -1,0 +1,99 @@
+// Keys of the heat and the moisture of the gas: what they come to, and what is refused.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/error.hpp"
+#include "tests/tools/cases_for_tests.hpp"
+#include "tools/pellicle/case_file.hpp"
+#include "tools/pellicle/case_spec.hpp"
+
+namespace pellicle::tools {
+namespace {
+
+using tests::humid_case;
+using tests::rising_case;
+
+std::string errors(const char* text, const std::vector<std::string>& assignments) {
+  try {
+    parse_case(text, "c.yaml", assignments);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(CaseGasHeat, IsRead) {
+  const GasSpec gas = *parse_case(humid_case, "c.yaml").gas;
+  const cfd::GasOptions& o = gas.options;
+  EXPECT_EQ(o.density_law, cfd::DensityLaw::ideal_gas);
+  EXPECT_EQ(o.viscosity_law, cfd::ViscosityLaw::sutherland);
+  EXPECT_FALSE(o.boussinesq.has_value());
+  const cfd::ScalarOptions& heat = *o.scalars[0];
+  EXPECT_EQ(heat.capacity, 1000);
+  EXPECT_EQ(*heat.vapour_capacity, 1900);
+  EXPECT_DOUBLE_EQ(heat.conductivity, 0.03);
+  EXPECT_DOUBLE_EQ(heat.initial, 293.15);
+  EXPECT_DOUBLE_EQ(heat.reference, 273.15);
+  const cfd::ScalarOptions& moisture = *o.scalars[1];
+  EXPECT_DOUBLE_EQ(moisture.diffusivity, 3e-5);
+  EXPECT_EQ(moisture.reference, 0);
+  // Half of 2338.8 Pa (ASHRAE, 20 degC) of 1 bar: X = 0.011694, w = 0.622 X / (1 - 0.378 X) = 0.00731.
+  EXPECT_NEAR(moisture.initial, 0.00731, 2e-5);
+  // 1e5 / (8.314463 * 293.15) * M, of dry air 1.1883; moist air is lighter by 0.378 X.
+  EXPECT_NEAR(o.density, 1.1883 * (1 - 0.378 * 0.011694), 2e-4);
+  EXPECT_NEAR(o.viscosity, 1.813e-5, 1e-8);
+  const auto& inlet = gas.boundaries[0].scalars;
+  EXPECT_DOUBLE_EQ(std::get<cfd::GivenValue>(inlet[0]).value, 353.15);
+  // A tenth of 47411.6 Pa at 80 degC: X = 0.047412, w = 0.0300.
+  EXPECT_NEAR(std::get<cfd::GivenValue>(inlet[1]).value, 0.0300, 1e-4);
+  EXPECT_EQ(std::get<cfd::GivenValue>(gas.boundaries[1].scalars[1]).value, 0.01);
+  EXPECT_DOUBLE_EQ(std::get<cfd::GivenValue>(gas.boundaries[2].scalars[0]).value, 373.15);
+  const auto jacket = std::get<cfd::Surroundings>(gas.boundaries[3].scalars[0]);
+  EXPECT_EQ(jacket.coefficient, 5);
+  EXPECT_DOUBLE_EQ(jacket.value, 288.15);
+  EXPECT_TRUE(std::holds_alternative<cfd::Insulated>(gas.boundaries[3].scalars[1]));
+}
+
+TEST(CaseGasHeat, BuoyancyHasDefaults) {
+  EXPECT_EQ(parse_case(rising_case, "c.yaml").gas->options.boussinesq->temperature, 310);
+  EXPECT_EQ(parse_case(rising_case, "c.yaml").gas->options.boussinesq->expansion, 3e-3);
+  const auto plain = *parse_case(rising_case, "c.yaml", {"gas.heat.buoyancy={}"}).gas->options.boussinesq;
+  EXPECT_EQ(plain.temperature, 300);
+  EXPECT_EQ(plain.expansion, 1.0 / 300);
+}
+
+TEST(CaseGasHeat, ContradictionsAreRefused) {
+  const auto humid = [](const std::string& assignment) { return errors(humid_case, {assignment}); };
+  const auto channel = [](const std::string& assignment) {
+    return errors(tests::channel_case, {assignment});
+  };
+  EXPECT_EQ(errors(humid_case, {}), "accepted");
+  EXPECT_TRUE(says(humid("gas.boundaries.below.inlet={velocity: 1, vapour_mass_fraction: 0}"),
+                   "gas.boundaries.below.inlet.temperature: missing; a temperature"));
+  EXPECT_TRUE(says(humid("gas.boundaries.below.inlet={velocity: 1, temperature: 300}"),
+                   "gas.boundaries.below.inlet.vapour_mass_fraction: missing"));
+  EXPECT_TRUE(
+      says(humid("gas.boundaries.below.inlet.vapour_mass_fraction=0.1"), "says the same; one of the two"));
+  EXPECT_TRUE(says(humid("gas.boundaries.jacket.wall.temperature=300"), "has a given temperature as well"));
+  EXPECT_TRUE(says(humid("gas.heat.buoyancy={}"), "an ideal gas has its own"));
+  EXPECT_TRUE(says(humid("gas.density={law: ideal}"), "\"ideal\" is unknown, the nearest is ideal_gas"));
+  EXPECT_TRUE(says(channel("gas.density={law: ideal_gas}"), "gas.density: an ideal gas needs a temperature"));
+  EXPECT_TRUE(says(channel("gas.viscosity={law: sutherland}"), "gas.viscosity: the law needs a temperature"));
+  EXPECT_TRUE(says(channel("gas.boundaries=[{name: w, on: top, wall: {temperature: 300}}]"),
+                   "wall.temperature: without gas.heat it is of no use"));
+  EXPECT_TRUE(says(channel("gas.moisture={initial_relative_humidity: 0.5}"),
+                   "relative to what temperature is not said"));
+  EXPECT_TRUE(says(channel("gas.boundaries=[{name: o, on: top, outlet: {relative_humidity: 0.5}}]"),
+                   "relative_humidity: without gas.moisture it is of no use"));
+  EXPECT_TRUE(
+      says(channel("output.probes=[{name: p, point: [0.5, 0.5, 0.5], quantities: [gas_temperature]}]"),
+           "gas_temperature needs a temperature of the gas; gas.heat"));
+  EXPECT_TRUE(says(channel("output.snapshots.gas=[vapour_mass_fraction]"), "needs moisture of the gas"));
+}
+
+}  // namespace
+}  // namespace pellicle::tools
