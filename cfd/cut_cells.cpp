@@ -322,9 +322,14 @@ class Cutter {
     const Real half = 0.5 * grid_.width(axis, at[axis]);
     const SurfaceLattice::Crossing* seen =
         sense > 0 ? (near != nullptr ? near : far) : (far != nullptr ? far : near);
-    // From the centre, in halves of a cell; beyond the face the other cell's half begins.
-    Real halves = sense > 0 ? (near != nullptr ? near->first : 1) : (far != nullptr ? 1 - far->last : 1);
-    halves = std::min(halves, Real{1});
+    // From the centre; beyond the face the other cell's half begins.
+    const Real other_half = 0.5 * grid_.width(axis, grid_.coordinates(other)[axis]);
+    Real away = 0;
+    if (sense > 0) {
+      away = near != nullptr ? near->first * half : half + far->first * other_half;
+    } else {
+      away = far != nullptr ? (1 - far->last) * half : half + (1 - near->last) * other_half;
+    }
     SurfacePiece piece;
     piece.cell = c;
     piece.surface = seen->surface;
@@ -332,13 +337,13 @@ class Cutter {
     const Real along = seen->normal[axis];
     piece.normal = along * sense > 0 ? -seen->normal : seen->normal;
     piece.point = {grid_.center(0, at.x), grid_.center(1, at.y), grid_.center(2, at.z)};
-    piece.point[axis] += sense * halves * half;
+    piece.point[axis] += sense * away;
     const int b = (axis + 1) % 3;
     const int c2 = (axis + 2) % 3;
     // A tilted surface closes faces across several axes; their areas times |n| add up to its own.
     piece.area = grid_.width(b, at[b]) * grid_.width(c2, at[c2]) * std::abs(along);
     // The gas of the cell reaches from the surface to the centre and beyond: in the middle, no nearer than a quarter.
-    piece.distance = std::max(halves * half * std::abs(along), 0.5 * half);
+    piece.distance = std::max(std::min(away, half) * std::abs(along), 0.5 * half);
     result_.pieces.push_back(piece);
     ++result_.closed_faces;
   }

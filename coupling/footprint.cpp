@@ -95,10 +95,60 @@ struct StoreVisits {
   KOKKOS_INLINE_FUNCTION void operator()(Index cell, Index pieces) const { entries(next++) = {cell, pieces}; }
 };
 
-/// Counts the entries of each particle, and where they begin.
-template <class Kernel>
-struct CountEntries {
+/// Cells that nothing cuts: every piece stays where it is.
+struct WholeCells {
   GridLocator grid;
+
+  template <class Kernel, class Visit>
+  KOKKOS_INLINE_FUNCTION void visit_cells_of(const dem::PositionRadius& particle, const Visit& visit) const {
+    visit_cells<Kernel>(grid, particle, visit);
+  }
+};
+
+/// Passes on the cells that are joined to a particle's own, and counts the pieces in the others.
+template <class Visit>
+struct VisitJoined {
+  const GridLocator& grid;
+  const CutGrid& cut;
+  const Visit& visit;
+  Index3 home;
+  Index& pieces_at_home;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index cell, Index pieces) const {
+    const Index nx = grid.x.cells, ny = grid.y.cells;
+    const Index3 at{cell % nx, (cell / nx) % ny, cell / (nx * ny)};
+    if (at == home || !cut.joined(grid, home, at)) {
+      pieces_at_home += pieces;
+    } else {
+      visit(cell, pieces);
+    }
+  }
+};
+
+/// Cells that walls cut: pieces beyond them are taken back into the particle's own cell.
+struct CutCells {
+  GridLocator grid;
+  CutGrid cut;
+
+  template <class Kernel, class Visit>
+  KOKKOS_INLINE_FUNCTION void visit_cells_of(const dem::PositionRadius& particle, const Visit& visit) const {
+    const Vec3 centre{grid.x.wrap(particle.x), grid.y.wrap(particle.y), grid.z.wrap(particle.z)};
+    const Index cell = grid.index(grid.x.locate(centre.x), grid.y.locate(centre.y), grid.z.locate(centre.z));
+    const Index home = cut.home(cell, centre);
+    const Index nx = grid.x.cells, ny = grid.y.cells;
+    Index pieces_at_home = 0;
+    visit_cells<Kernel>(
+        grid, particle,
+        VisitJoined<Visit>{
+            grid, cut, visit, {home % nx, (home / nx) % ny, home / (nx * ny)}, pieces_at_home});
+    if (pieces_at_home > 0) visit(home, pieces_at_home);
+  }
+};
+
+/// Counts the entries of each particle, and where they begin.
+template <class Kernel, class Cells>
+struct CountEntries {
+  Cells cells;
   DeviceArray<dem::PositionRadius> position_radius;
   FootprintView footprint;
   DeviceArray<dem::PositionRadius> computed_at;
@@ -107,7 +157,7 @@ struct CountEntries {
     const dem::PositionRadius particle = position_radius(p);
     computed_at(p) = particle;
     Index count = 0;
-    visit_cells<Kernel>(grid, particle, CountVisits{count});
+    cells.template visit_cells_of<Kernel>(particle, CountVisits{count});
     footprint.begin(p) = count;
   }
 };
@@ -122,27 +172,17 @@ struct ScanCounts {
   }
 };
 
-template <class Kernel>
+template <class Kernel, class Cells>
 struct StoreEntries {
-  GridLocator grid;
+  Cells cells;
   DeviceArray<dem::PositionRadius> computed_at;
   FootprintView footprint;
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
     Index next = footprint.begin(p);
-    visit_cells<Kernel>(grid, computed_at(p), StoreVisits{footprint.entries, next});
+    cells.template visit_cells_of<Kernel>(computed_at(p), StoreVisits{footprint.entries, next});
   }
 };
-
-template <class Kernel>
-void count_entries(const Kernel&, const CountEntries<Kernel>& kernel, Index particles) {
-  Kokkos::parallel_for("coupling::footprint::count_entries", DeviceRange(0, particles), kernel);
-}
-
-template <class Kernel>
-void store_entries(const Kernel&, const StoreEntries<Kernel>& kernel, Index particles) {
-  Kokkos::parallel_for("coupling::footprint::store_entries", DeviceRange(0, particles), kernel);
-}
 
 /// Particles that are not where they were.
 struct CountMoved {
@@ -155,13 +195,34 @@ struct CountMoved {
 
 }  // namespace
 
-Footprint::Footprint(const GridLocator& grid, const Deposition& kernel) : grid_(grid), kernel_(kernel) {
+Footprint::Footprint(const GridLocator& grid, const Deposition& kernel, const CutGrid& cut)
+    : grid_(grid), kernel_(kernel), cut_(cut) {
   view_.share = std::visit([](const auto& k) { return 1.0 / k.pieces; }, kernel_);
 }
 
-void Footprint::compute(const dem::Particles& particles) {
+template <class Kernel, class Cells>
+void Footprint::count_and_store(const dem::Particles& particles, const Cells& cells) {
   const Index n = particles.count;
-  const auto size = static_cast<std::size_t>(n);
+  Kokkos::parallel_for("coupling::footprint::count_entries", DeviceRange(0, n),
+                       CountEntries<Kernel, Cells>{cells, particles.position_radius, view_, computed_at_});
+  Index total = 0;
+  Kokkos::parallel_scan("coupling::footprint::scan_counts", DeviceRange(0, n + 1), ScanCounts{view_.begin, n},
+                        total);
+  if (view_.entries.extent(0) < static_cast<std::size_t>(total)) {
+    // Room to move: a bed that expands covers more cells.
+    const std::size_t room =
+        std::max<std::size_t>(static_cast<std::size_t>(total) * 3 / 2, 4 * static_cast<std::size_t>(n));
+    view_.entries = DeviceArray<FootprintEntry>(
+        Kokkos::view_alloc("coupling::footprint::entries", Kokkos::WithoutInitializing), room);
+  }
+  Kokkos::parallel_for("coupling::footprint::store_entries", DeviceRange(0, n),
+                       StoreEntries<Kernel, Cells>{cells, computed_at_, view_});
+  particle_count_ = n;
+  entry_count_ = total;
+}
+
+void Footprint::compute(const dem::Particles& particles) {
+  const auto size = static_cast<std::size_t>(particles.count);
   if (computed_at_.extent(0) < size || view_.begin.extent(0) == 0) {
     computed_at_ = DeviceArray<dem::PositionRadius>(
         Kokkos::view_alloc("coupling::footprint::computed_at", Kokkos::WithoutInitializing), size);
@@ -171,26 +232,13 @@ void Footprint::compute(const dem::Particles& particles) {
   std::visit(
       [&](const auto& kernel) {
         using Kernel = std::decay_t<decltype(kernel)>;
-        count_entries(kernel, CountEntries<Kernel>{grid_, particles.position_radius, view_, computed_at_}, n);
+        if (cut_.is_cut()) {
+          count_and_store<Kernel>(particles, CutCells{grid_, cut_});
+        } else {
+          count_and_store<Kernel>(particles, WholeCells{grid_});
+        }
       },
       kernel_);
-  Index total = 0;
-  Kokkos::parallel_scan("coupling::footprint::scan_counts", DeviceRange(0, n + 1), ScanCounts{view_.begin, n},
-                        total);
-  if (view_.entries.extent(0) < static_cast<std::size_t>(total)) {
-    // Room to move: a bed that expands covers more cells.
-    const std::size_t room = std::max<std::size_t>(static_cast<std::size_t>(total) * 3 / 2, 4 * size);
-    view_.entries = DeviceArray<FootprintEntry>(
-        Kokkos::view_alloc("coupling::footprint::entries", Kokkos::WithoutInitializing), room);
-  }
-  std::visit(
-      [&](const auto& kernel) {
-        using Kernel = std::decay_t<decltype(kernel)>;
-        store_entries(kernel, StoreEntries<Kernel>{grid_, computed_at_, view_}, n);
-      },
-      kernel_);
-  particle_count_ = n;
-  entry_count_ = total;
 }
 
 bool Footprint::is_current(const dem::Particles& particles) const {

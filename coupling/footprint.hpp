@@ -1,6 +1,7 @@
 // The footprint of particles on a grid: which cells each particle covers, and with how many of its pieces.
 #pragma once
 
+#include "coupling/cut_grid.hpp"
 #include "coupling/deposition_kernels.hpp"
 #include "coupling/grid_locator.hpp"
 #include "dem/particles.hpp"
@@ -34,8 +35,9 @@ struct FootprintView {
 /// Owns the footprint of all particles on one grid. Memory grows with the particles and is kept.
 class Footprint {
  public:
-  /// Pieces outside a grid's walls belong to the nearest cell; periodic axes wrap.
-  Footprint(const GridLocator& grid, const Deposition& kernel);
+  /// Pieces outside the grid belong to the nearest cell; periodic axes wrap. Where walls cut the grid, pieces in cells
+  /// that are not joined (CutGrid::joined) to the particle's own belong to that.
+  Footprint(const GridLocator& grid, const Deposition& kernel, const CutGrid& cut = {});
 
   /// Finds the cells of every particle at its present position. Independent of the number of threads.
   void compute(const dem::Particles& particles);
@@ -48,8 +50,12 @@ class Footprint {
   Index entry_count() const { return entry_count_; }
 
  private:
+  template <class Kernel, class Cells>
+  void count_and_store(const dem::Particles& particles, const Cells& cells);
+
   GridLocator grid_;
   Deposition kernel_;
+  CutGrid cut_;
   FootprintView view_;
   DeviceArray<dem::PositionRadius> computed_at_;
   Index particle_count_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "cfd/flow_geometry.hpp"
 #include "core/checkpoint.hpp"
 #include "core/error.hpp"
 
@@ -116,6 +117,34 @@ struct ComputeVoidFraction {
   }
 };
 
+/// The same in the open volume of cells; 1 where no gas is.
+struct ComputeOpenVoidFraction {
+  DeviceArray<Real> volume;
+  DeviceArray<CellLoad> load;
+  DeviceArray<Real> void_fraction;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index cell) const {
+    void_fraction(cell) = volume(cell) > 0 ? 1 - load(cell).solids / volume(cell) : Real(1);
+  }
+};
+
+/// What walls leave of the cells; the footprints know no cells but the gas's, and smoothing no walls.
+CutGrid cut_by(const cfd::FlowGeometry* walls, const CouplingOptions& options, const CartesianGrid& transfer,
+               const CartesianGrid& gas) {
+  if (walls == nullptr || !walls->is_cut) return {};
+  if (!same_cells(transfer, gas)) {
+    throw InputError(
+        "coupling.transfer_grid: must have the cells of the gas grid, since walls within the domain cut "
+        "them; "
+        "allowed: leave it out");
+  }
+  if (options.smoothing_length != 0) {
+    throw InputError(
+        "coupling.smoothing_length: would smooth across the walls within the domain that cut the gas grid; "
+        "allowed: 0");
+  }
+  return make_cut_grid(*walls);
+}
+
 void check(const CouplingOptions& options, const GasProperties& properties) {
   const Real least = options.minimum_void_fraction;
   if (!(least > 0 && least < 1)) {
@@ -138,16 +167,18 @@ void check(const CouplingOptions& options, const GasProperties& properties) {
 }  // namespace
 
 MomentumExchange::MomentumExchange(const CouplingOptions& options, const CartesianGrid& transfer,
-                                   const CartesianGrid& gas, const GasProperties& properties)
+                                   const CartesianGrid& gas, const GasProperties& properties,
+                                   const cfd::FlowGeometry* walls)
     : options_(options),
       properties_(properties),
       transfer_(transfer),
       gas_(gas),
       one_grid_(same_cells(transfer, gas)),
-      transfer_footprint_(GridLocator(transfer), options.deposition),
+      cut_(cut_by(walls, options, transfer, gas)),
+      transfer_footprint_(GridLocator(transfer), options.deposition, cut_),
       gas_footprint_(GridLocator(gas), options.deposition),
       sums_(transfer.cell_count()),
-      bound_(transfer_footprint_.grid(), options.minimum_void_fraction),
+      bound_(transfer_footprint_.grid(), options.minimum_void_fraction, cut_),
       smoothing_(transfer_footprint_.grid(), options.smoothing_length),
       to_gas_(transfer, gas),
       to_transfer_(gas, transfer) {
@@ -170,7 +201,7 @@ MomentumExchange::MomentumExchange(const CouplingOptions& options, const Cartesi
   volume_ = make_host<Real>("coupling::momentum_exchange::volume", cells);
   for (Index c = 0; c < cells; ++c) {
     const Index3 at = transfer.coordinates(c);
-    volume_(c) = transfer.volume(at.x, at.y, at.z);
+    volume_(c) = cut_.is_cut() ? walls->volume(c) : transfer.volume(at.x, at.y, at.z);
   }
   exchange_ = cfd::ParticleExchange{
       make_host<Real>("coupling::momentum_exchange::exchange_void_fraction", gas_cells),
@@ -241,8 +272,13 @@ void MomentumExchange::deposit_loads(const dem::Particles& particles, Real gas_s
   bound_report_ = bound_.apply(cell_load_);
   smoothing_.apply(cell_load_);  // raises no solids fraction above the largest: the bound still holds
   const Index cells = transfer_.cell_count();
-  Kokkos::parallel_for("coupling::momentum_exchange::compute_void_fraction", DeviceRange(0, cells),
-                       ComputeVoidFraction{transfer_footprint_.grid(), cell_load_, void_fraction_});
+  if (cut_.is_cut()) {
+    Kokkos::parallel_for("coupling::momentum_exchange::compute_open_void_fraction", DeviceRange(0, cells),
+                         ComputeOpenVoidFraction{cut_.volume, cell_load_, void_fraction_});
+  } else {
+    Kokkos::parallel_for("coupling::momentum_exchange::compute_void_fraction", DeviceRange(0, cells),
+                         ComputeVoidFraction{transfer_footprint_.grid(), cell_load_, void_fraction_});
+  }
   Kokkos::deep_copy(cell_load_host_, cell_load_);
   Kokkos::deep_copy(void_fraction_host_, void_fraction_);
   if (bound_report_.cells_left_over == 0) return;
@@ -272,6 +308,7 @@ const cfd::ParticleExchange& MomentumExchange::deposit(const dem::Particles& par
   const Real release_rate = two_way ? options_.pending_release / gas_step : 0;
   for (Index c = 0; c < transfer_.cell_count(); ++c) {
     const CellLoad& load = cell_load_host_(c);
+    if (!(volume_(c) > 0)) continue;  // no gas, and no particle either: all stays 0
     const Real per_volume = 1 / volume_(c);
     coefficient_(c) = per_volume * load.coefficient;
     target_(c) = per_volume * load.reaction;

@@ -8,6 +8,7 @@
 #include "core/views.hpp"
 #include "coupling/cell_sums.hpp"
 #include "coupling/coupling_options.hpp"
+#include "coupling/cut_grid.hpp"
 #include "coupling/fluid_force.hpp"
 #include "coupling/footprint.hpp"
 #include "coupling/grid_mapping.hpp"
@@ -40,9 +41,11 @@ struct ExchangeTotals {
 /// docs/theory/coupling.md has the equations and how large the share may be.
 class MomentumExchange {
  public:
-  /// Both grids cover the same box. Throws InputError for options out of range or grids that do not.
+  /// Both grids cover the same box. `walls`, if any, is the geometry of the gas; where it is cut, the two grids must be
+  /// one, and the void fraction is that of the open volume of cells. Throws InputError for options out of range or
+  /// grids that do not fit.
   MomentumExchange(const CouplingOptions& options, const CartesianGrid& transfer, const CartesianGrid& gas,
-                   const GasProperties& properties);
+                   const GasProperties& properties, const cfd::FlowGeometry* walls = nullptr);
 
   /// Void fraction of the particles where they are now, on both grids; totals and pending momentum begin at zero.
   /// Throws RunError if the particles do not fit under the bound of the void fraction.
@@ -94,6 +97,7 @@ class MomentumExchange {
   bool one_grid_ = true;  // transfer and gas grid have the same cells
 
   // Device.
+  CutGrid cut_;  // empty if walls do not cut the gas grid
   Footprint transfer_footprint_;
   Footprint gas_footprint_;  // in use if not one_grid_
   CellSums sums_;
@@ -117,7 +121,7 @@ class MomentumExchange {
   HostArray<Vec3> pending_;               // transfer grid, momentum per volume [N s/m3]
   HostArray<Real> gas_solids_;            // gas grid
   HostArray<Vec3> given_, given_transfer_;
-  HostArray<Real> volume_;  // of transfer cells [m3]
+  HostArray<Real> volume_;  // of transfer cells, open to the gas [m3]
   cfd::ParticleExchange exchange_;
   ExchangeTotals totals_;
   BoundReport bound_report_;

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/log.hpp"
+#include "tools/pellicle/build_case.hpp"
 #include "tools/pellicle/build_walls.hpp"
 #include "tools/pellicle/case_checks.hpp"
 
@@ -104,6 +105,20 @@ cfd::GasSolver make_gas_solver(const CaseSpec& spec, const std::vector<dem::Wall
     throw InputError(fmt::format("{}: {}: [{:g}, {:g}, {:g}] m; allowed: a point in the gas as gas.inside",
                                  spec.where(spec.gas->inside ? "gas.inside" : "gas"), error.what(), p.x, p.y,
                                  p.z));
+  }
+}
+
+coupling::MomentumExchange make_exchange(const CaseSpec& spec, const cfd::GasSolver& gas) {
+  const coupling::GasProperties properties{spec.gas->options.density, spec.gas->options.viscosity,
+                                           spec.gravity};
+  try {
+    return {make_coupling_options(spec), make_grid(spec.coupling.transfer_grid, spec.domain), gas.grid(),
+            properties, &gas.geometry()};
+  } catch (const InputError& error) {
+    const std::string what = error.what();  // key: what is wrong
+    const std::size_t colon = what.find(": ");
+    if (colon == std::string::npos) throw;
+    throw InputError(spec.where(what.substr(0, colon)) + what.substr(colon));
   }
 }
 

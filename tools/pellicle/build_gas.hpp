@@ -1,7 +1,8 @@
-// The gas solver of a case: walls as the gas sees them, and the point from which it spreads.
+// The gas solver of a case: walls as the gas sees them, and the point from which it spreads. Its exchange with particles.
 #pragma once
 
 #include "cfd/gas_solver.hpp"
+#include "coupling/momentum_exchange.hpp"
 #include "dem/walls.hpp"
 #include "tools/pellicle/case_spec.hpp"
 
@@ -13,6 +14,9 @@ cfd::ImmersedGeometry make_immersed(const CaseSpec& spec, const std::vector<dem:
 
 /// The gas solver. `walls` are those of the case in their order. Throws InputError.
 cfd::GasSolver make_gas_solver(const CaseSpec& spec, const std::vector<dem::Wall>& walls);
+
+/// The exchange of momentum with the particles of a case. Throws InputError.
+coupling::MomentumExchange make_exchange(const CaseSpec& spec, const cfd::GasSolver& gas);
 
 /// The walls of a case; reads STL files.
 std::vector<dem::Wall> make_walls(const CaseSpec& spec);

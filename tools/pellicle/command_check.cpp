@@ -191,7 +191,9 @@ void try_to_build(const CaseSpec& spec) {
     } else {
       walls = make_walls(spec);
     }
-    if (spec.gas) make_gas_solver(spec, walls);
+    if (!spec.gas) return;
+    const cfd::GasSolver gas = make_gas_solver(spec, walls);
+    if (!spec.particles.empty()) make_exchange(spec, gas);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", spec.file, error.what()));
   }

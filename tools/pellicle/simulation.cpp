@@ -48,11 +48,7 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
     gas_.emplace(make_gas_solver(spec_, particles_ ? particles_->setup().walls : make_walls(spec_)));
     no_particles_ = cfd::make_empty_exchange(gas_->grid());
   }
-  if (particles_ && gas_) {
-    exchange_.emplace(
-        make_coupling_options(spec_), make_grid(spec_.coupling.transfer_grid, spec_.domain), gas_->grid(),
-        coupling::GasProperties{spec_.gas->options.density, spec_.gas->options.viscosity, spec_.gravity});
-  }
+  if (particles_ && gas_) exchange_.emplace(make_exchange(spec_, *gas_));
   if (particles_) {
     for (const WallSpec& wall : spec_.walls) walls_.push_back({wall.name, {}, {}, 0});
     particles_->hold_walls();  // until t = 0
