@@ -388,6 +388,18 @@ Vec3 FaceBalance::surface_pressure_force(const GasFields& fields, Index c) const
     force[axis] = geometry_.area[a](plus) * (p + half * side[1]) -
                   geometry_.area[a](minus) * (p - half * side[0]) -
                   0.5 * geometry_.volume(c) * (side[0] + side[1]);
+    // Steps of the convective acceleration (compute_pressure_gradient) act on the gas over the open area of a face, on
+    // particles over the cell's width: in a cut cell what these are short of stays with the wall.
+    const Real mean_area = 0.5 * geometry_.volume(c) / half;
+    const Real own = fields.void_fraction(c);
+    const auto add_step = [&](Index face, Index neighbour) {
+      const Real other = fields.void_fraction(neighbour);
+      force[axis] +=
+          (1 - own) * (geometry_.area[a](face) - mean_area) * jump_[a](face) * other / (own + other);
+    };
+    const Index last = s.n[axis] - 1, around = last * s.stride(axis);
+    if (at[axis] > 0 || s.periodic[a]) add_step(minus, at[axis] > 0 ? c - s.stride(axis) : c + around);
+    if (at[axis] < last || s.periodic[a]) add_step(plus, at[axis] < last ? c + s.stride(axis) : c - around);
   }
   return force;
 }

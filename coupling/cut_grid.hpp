@@ -16,8 +16,8 @@ namespace pellicle::coupling {
 
 /// A surface thinner than a cell as one of its cells sees it; a plane.
 struct ThinWall {
-  Vec3 point;   ///< [m]
-  Vec3 normal;  ///< towards the cell's centre
+  Vec3 point;    ///< [m]
+  Vec3 normal;   ///< towards the cell's centre
   Index beyond;  ///< the cell on the other side
 };
 

@@ -170,7 +170,8 @@ TEST(CutCells, ThinTubeClosesFaces) {
     EXPECT_EQ(std::abs(at.x - beyond.x) + std::abs(at.y - beyond.y) + std::abs(at.z - beyond.z), 1);
     const bool inside = std::hypot(grid.center(0, at.x), grid.center(1, at.y)) < 0.5;
     EXPECT_EQ(dot(piece.normal, piece.point) < 0, inside);
-    EXPECT_NEAR(std::hypot(piece.point.x, piece.point.y), 0.5, 1e-6);  // crossings are found 1e-7 of a cell aside
+    EXPECT_NEAR(std::hypot(piece.point.x, piece.point.y), 0.5,
+                1e-6);  // crossings are found 1e-7 of a cell aside
   }
   const Stencil s = stencil_of(grid);
   for (Index j = 0; j < 20; ++j) {

@@ -70,5 +70,38 @@ TEST(BuildGas, WithoutInletInsideIsNeeded) {
   EXPECT_NE(message.find("gas.inside"), std::string::npos) << message;
 }
 
+// Particles need the cells that the walls cut; the message names the key and where it stands.
+TEST(BuildGas, ExchangeInACutGridNeedsTheGasGridsCells) {
+  const std::string text = std::string(tests::chamber_case) +
+                           R"(materials: {glass: {density: 2500, youngs_modulus: 1e6, poisson_ratio: 0.22}}
+contacts:
+  pairs:
+    - {between: [glass, glass], restitution: 0.9, sliding_friction: 0.3}
+    - {between: [glass, steel], restitution: 0.9, sliding_friction: 0.3}
+particles: [{material: glass, count: 10, diameter: "2 mm", fill: {box: {min: [0, 0, 0.05], max: [0.01, 0.01, 0.06]}}}]
+coupling: {pending_release: 0.1}
+)";
+  const auto message_of = [&](std::vector<std::string> overrides) {
+    overrides.emplace_back("time.particle_step=1e-5 s");
+    const CaseSpec spec = parse_case(text, "c.yaml", overrides);
+    const cfd::GasSolver gas = make_gas_solver(spec, make_walls(spec));
+    try {
+      const coupling::MomentumExchange exchange = make_exchange(spec, gas);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message_of({}), "");
+  EXPECT_EQ(message_of({"coupling.smoothing_length=5 mm"}),
+            "--set: coupling.smoothing_length: would smooth across the walls within the domain that cut the "
+            "gas grid; "
+            "allowed: 0");
+  EXPECT_EQ(
+      message_of({"coupling.transfer_grid.cells=[6, 6, 6]"}),
+      "--set: coupling.transfer_grid: must have the cells of the gas grid, since walls within the domain cut "
+      "them; allowed: leave it out");
+}
+
 }  // namespace
 }  // namespace pellicle::tools
