@@ -11,7 +11,7 @@ namespace {
 
 template <class T>
 DeviceArray<T> to_device(const char* label, const std::vector<T>& from) {
-  const DeviceArray<T> made(Kokkos::view_alloc(std::string(label), Kokkos::WithoutInitializing), from.size());
+  DeviceArray<T> made(Kokkos::view_alloc(std::string(label), Kokkos::WithoutInitializing), from.size());
   const auto host = Kokkos::create_mirror_view(made);
   for (std::size_t i = 0; i < from.size(); ++i) host(i) = from[i];
   Kokkos::deep_copy(made, host);
@@ -79,8 +79,7 @@ CutGrid make_cut_grid(const cfd::FlowGeometry& geometry) {
   CutGrid made;
   if (!geometry.is_cut) return made;
   const Index cells = geometry.stencil.cells();
-  std::vector<Real> volume;
-  for (Index c = 0; c < cells; ++c) volume.push_back(geometry.volume(c));
+  const std::vector<Real> volume(geometry.volume.data(), geometry.volume.data() + cells);
   std::vector<Index> begin(static_cast<std::size_t>(cells) + 1, 0);
   std::vector<ThinWall> walls;
   for (const cfd::SurfacePiece& piece : geometry.pieces) {  // in the order of cells
