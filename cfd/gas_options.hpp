@@ -43,6 +43,7 @@ struct GasSolverOptions {
   int max_linear_iterations = 500;
   Real velocity_relaxation = 1;  ///< in (0, 1]; below 1 only for steps of many Courant numbers
   PressureSolver pressure_solver = PressureSolver::multigrid;
+  bool require_convergence = false;  ///< a step whose outer iterations miss outer_tolerance stops the run
 };
 
 /// What the density follows.

@@ -325,6 +325,40 @@ Real GasSolver::Impl::face_velocity_change() const {
   return largest > 0 ? change / largest : 0;
 }
 
+// A cell beside the face whose velocity the last outer iteration changed most.
+Index GasSolver::Impl::most_changed_cell() const {
+  Index worst = 0;
+  Real largest = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Index step = geometry.stencil.face_step(axis);
+    for (Index r = 0; r < geometry.stencil.rows(); ++r) {
+      const Row row = geometry.stencil.row(r);
+      const Index first = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
+      for (Index i = 0; i < geometry.stencil.n.x; ++i) {
+        for (const Index f : {first + i, first + i + step}) {
+          const Real change = std::abs(fields.superficial[a](f) - before[a](f));
+          if (change <= largest) continue;
+          largest = change;
+          worst = row.cell + i;
+        }
+      }
+    }
+  }
+  return worst;
+}
+
+// Relative change of a cell's gas in the step that the fluxes do not account for.
+Real GasSolver::Impl::find_divergence(Real dt) {
+  compute_continuity_residual(dt);
+  Real largest = 0;
+  for (Index c = 0; c < fields.cells; ++c) {
+    const Real volume = geometry.volume(c);
+    if (volume > 0) largest = std::max(largest, std::abs(rhs(c)) * dt / volume);
+  }
+  return largest;
+}
+
 void GasSolver::Impl::fail(const std::string& what, Index cell) const {
   const Index3 at = geometry.grid.coordinates(cell);
   throw RunError(fmt::format("gas: {}, in cell ({}, {}, {}) at ({:.6g}, {:.6g}, {:.6g}) m, at t = {:.9g} s",
@@ -376,6 +410,7 @@ void GasSolver::Impl::finish_step(Real dt, const ParticleExchange& exchange, Ste
   faces.compute_pressure_gradient(fields, state.pressure_gradient);
   copy_velocity_to_state();
   report.courant_number = check_and_find_courant(dt);
+  report.divergence = find_divergence(dt);
   add_to_balance(dt, exchange);
   const ScalarReport scalar = scalars.update(fields, dt, exchange.scalars);
   report.scalar_iterations = scalar.iterations;
@@ -517,8 +552,38 @@ StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
     report.velocity_change = s.face_velocity_change();
     done = last || (nearly_there && report.velocity_change < options.outer_tolerance);
   }
+  report.converged = report.velocity_change < options.outer_tolerance;
+  if (options.require_convergence && !report.converged) {
+    s.fail(fmt::format("after {} outer iterations face velocities still change by {:.3g} of the largest; "
+                       "solver.outer_tolerance {:.3g} is required",
+                       report.outer_iterations, report.velocity_change, options.outer_tolerance),
+           s.most_changed_cell());
+  }
   s.finish_step(dt, exchange, report);
   return report;
+}
+
+Real GasSolver::courant_number(Real dt) const {
+  const Impl& s = *impl_;
+  const Stencil& stencil = s.geometry.stencil;
+  Real largest = 0;
+  for (Index r = 0; r < stencil.rows(); ++r) {
+    const Row row = stencil.row(r);
+    const Index first[3] = {row.x_face, row.y_face, row.z_face};
+    for (Index i = 0; i < stencil.n.x; ++i) {
+      const Index place[3] = {i, row.j, row.k};
+      Real own = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const Index f = first[axis] + i;
+        const Real fastest = std::max(std::abs(s.fields.superficial[a](f)),
+                                      std::abs(s.fields.superficial[a](f + stencil.face_step(axis))));
+        own += fastest / s.geometry.axis[a].width[static_cast<std::size_t>(place[axis])];
+      }
+      largest = std::max(largest, own * dt / s.fields.void_fraction(row.cell + i));
+    }
+  }
+  return largest;
 }
 
 const CartesianGrid& GasSolver::grid() const { return impl_->geometry.grid; }

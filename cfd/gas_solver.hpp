@@ -32,7 +32,9 @@ struct StepReport {
   Real velocity_change = 0;       ///< relative change of the face velocities by the last outer iteration
   int scalar_iterations = 0;      ///< of all scalars' linear solves
   int scalar_cells_returned = 0;  ///< cells where a scalar's bounds asked for upwind
-  Real courant_number = 0;        ///< largest sum over axes of |u| dt / cell width
+  bool converged = true;          ///< velocity_change is below outer_tolerance
+  Real divergence = 0;      ///< largest |d eps/dt + div(eps u)| dt of a cell, after the last pressure solve
+  Real courant_number = 0;  ///< largest sum over axes of |u| dt / cell width
 };
 
 /// Solves d(eps rho)/dt + div(eps rho u) = 0 and
@@ -62,6 +64,10 @@ class GasSolver {
   /// Advances by dt [s]. Throws RunError if the gas does not converge or is no longer finite, saying where and when;
   /// the state is then that of the failed step.
   StepReport update(Real dt, const ParticleExchange& exchange);
+
+  /// Largest sum over axes of |u| dt / cell width that a step of dt [s] from here begins with; u is the larger velocity
+  /// of each cell's two faces, inlets included.
+  Real courant_number(Real dt) const;
 
   const CartesianGrid& grid() const;
   const FlowGeometry& geometry() const;

@@ -36,6 +36,8 @@ struct GasSolver::Impl {
   void update_stocks();
   void copy_velocity_to_state();
   Real check_and_find_courant(Real dt) const;
+  Real find_divergence(Real dt);
+  Index most_changed_cell() const;
   [[noreturn]] void fail(const std::string& what, Index cell) const;
   Index worst_cell() const;
 

@@ -24,6 +24,21 @@ std::optional<std::int64_t> whole_multiple(Real length, Real unit) {
   return static_cast<std::int64_t>(nearest);
 }
 
+int choose_parts(Real needed, int substeps) {
+  constexpr int most = 1000;
+  const int limit = substeps > 0 ? std::min(substeps, most) : most;
+  if (!(needed > 1)) return 1;
+  if (needed >= limit && substeps <= 0) return most;
+  int largest = 1;
+  for (int parts = 1; parts <= limit; ++parts) {
+    if (substeps > 0 && substeps % parts != 0) continue;
+    largest = parts;
+    // Round-off of the velocity does not make a part more.
+    if (parts >= needed * (1 - 1e-12)) return parts;
+  }
+  return largest;
+}
+
 TimeControl::TimeControl(Real end, Real gas_step, Real particle_step, Real settle) : gas_step_(gas_step) {
   if (!(end > 0)) throw std::invalid_argument("the end time must be positive");
   if (!(gas_step > 0)) throw std::invalid_argument("the gas step must be positive");

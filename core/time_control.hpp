@@ -16,6 +16,10 @@ class CheckpointWriter;
 /// Number n >= 1 with |n unit - length| <= 1e-6 unit, or nothing: `length` is then no whole multiple of `unit`.
 std::optional<std::int64_t> whole_multiple(Real length, Real unit);
 
+/// The least number of equal parts of an outer step that is not below `needed`; with `substeps` > 0 one that divides them,
+/// or all of them if there are fewer than needed. At most 1000, and at least 1, also for what is not a number.
+int choose_parts(Real needed, int substeps);
+
 /// Something that happens every so many outer steps, counted from t = 0, so also at t = 0 itself.
 struct Schedule {
   std::int64_t steps = 0;  ///< 0: never

@@ -1,11 +1,30 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/checkpoint.hpp"
 #include "core/time_control.hpp"
 #include "tests/core/temporary_folder.hpp"
 
 using namespace pellicle;
 using namespace pellicle::core;
+
+TEST(ChooseParts, DivideTheParticleSteps) {
+  // Divisors of 12: 1, 2, 3, 4, 6, 12.
+  EXPECT_EQ(choose_parts(0.3, 12), 1);
+  EXPECT_EQ(choose_parts(1, 12), 1);
+  EXPECT_EQ(choose_parts(1.01, 12), 2);
+  EXPECT_EQ(choose_parts(3, 12), 3);
+  EXPECT_EQ(choose_parts(3 * (1 + 1e-14), 12), 3);
+  EXPECT_EQ(choose_parts(4.5, 12), 6);
+  EXPECT_EQ(choose_parts(7, 12), 12);
+  EXPECT_EQ(choose_parts(50, 12), 12);  // no particle step is divided
+  EXPECT_EQ(choose_parts(2, 7), 7);
+  // Without particles any number.
+  EXPECT_EQ(choose_parts(4.5, 0), 5);
+  EXPECT_EQ(choose_parts(1e9, 0), 1000);
+  EXPECT_EQ(choose_parts(std::numeric_limits<Real>::quiet_NaN(), 0), 1);
+}
 
 TEST(TimeControl, WholeMultiples) {
   EXPECT_EQ(whole_multiple(1e-4, 1e-5), 10);

@@ -8,7 +8,7 @@ seed: 42
 domain: {min: [0, 0, 0], max: ["40 mm", "10 mm", "100 mm"], periodic: [y]}
 gravity: [0.1, 0, -9.8]
 time: {end: "2 s", gas_step: "0.1 ms", particle_step: "5 us", impact_speed: "3 m/s", settle: "0.1 s",
-       allow_large_step: true}
+       allow_large_step: true, courant: 0.8}
 materials:
   glass: {density: "2.5 g/cm3", youngs_modulus: "10 MPa", poisson_ratio: 0.22}
   steel: {density: 7800, youngs_modulus: 2e9, poisson_ratio: 0.3, true_youngs_modulus: "2e11 Pa"}
@@ -49,7 +49,8 @@ gas:
     - {name: slip, on: right, free_slip: {}}
     - {name: top, on: top, outlet: {pressure: "1 kPa"}}
   solver: {pressure_tolerance: 1e-9, loose_pressure_tolerance: 1e-2, momentum_tolerance: 1e-8, outer_tolerance: 1e-5,
-           max_outer_iterations: 4, max_linear_iterations: 100, velocity_relaxation: 0.9, pressure_solver: amgcl}
+           max_outer_iterations: 4, max_linear_iterations: 100, velocity_relaxation: 0.9, pressure_solver: amgcl,
+           require_convergence: true}
 coupling: {drag: koch_hill, deposition: centroid, transfer_grid: {cell_size: "5 mm"}, exchange: explicit,
            pressure_gradient_force: false, coefficients: substep, minimum_void_fraction: 0.4, pending_release: 0.2,
            smoothing_length: "6 mm"}

@@ -24,7 +24,7 @@ CASE = """
 title: small bed for bitwise comparison
 seed: 3
 domain: {min: [0, 0, 0], max: ["30 mm", "12 mm", "60 mm"]}
-time: {end: "30 ms", gas_step: "1e-4 s", particle_step: "1e-5 s", impact_speed: "2 m/s", settle: "20 ms"}
+time: {end: "30 ms", gas_step: "1e-4 s", particle_step: "1e-5 s", impact_speed: "2 m/s", settle: "20 ms", courant: 0.12}
 materials:
   glass: {density: 2505, youngs_modulus: 1e7, poisson_ratio: 0.22}
 contacts:

@@ -455,6 +455,7 @@ class Checker {
         unused(path, "particles");
       }
     } else if (!spec_.gas) {
+      unused("time.courant", "gas");
       unused("coupling", "gas");
       unused("output.snapshots.gas", "gas");
     }

@@ -66,6 +66,11 @@ void describe_time(Keys& keys, TimeSpec& time) {
                 {"particle_step", "step of the particles; gas_step is a whole multiple of it",
                  Need::has_default, "required with particles"},
                 {dimension::duration, range::positive}, time.particle_step);
+  keys.real({"courant",
+             "of the gas: where it would be larger, an outer step is divided into equal parts, each of whole "
+             "particle steps",
+             Need::has_default, "outer steps are not divided"},
+            {dimension::pure_number, range::positive}, time.courant);
   real_or_unset(keys,
                 {"impact_speed", "largest impact speed expected, for the bound on particle_step",
                  Need::has_default, "largest initial speed, at least 1 m/s"},

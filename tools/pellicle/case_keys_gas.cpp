@@ -148,6 +148,9 @@ void describe_solver(Keys& keys, cfd::GasSolverOptions& solver) {
   keys.whole({"max_linear_iterations", "of one linear solve"}, {1, 1'000'000}, solver.max_linear_iterations);
   keys.real({"velocity_relaxation", "below 1 only for steps of many Courant numbers"},
             {dimension::pure_number, {.min = 0, .max = 1, .min_excluded = true}}, solver.velocity_relaxation);
+  keys.flag({"require_convergence",
+             "a step whose outer iterations do not come down to outer_tolerance stops the run"},
+            solver.require_convergence);
   keys.choice({"pressure_solver", "both give the same answer to within the tolerance"}, pressure_solver_list,
               solver.pressure_solver);
 }

@@ -40,8 +40,9 @@ struct TimeSpec {
   Real gas_step = 0;
   /// [s]; gas_step / particle_step is a whole number; equals gas_step without particles.
   Real particle_step = 0;
-  Real impact_speed = 0;  ///< largest impact speed expected, for the bound on particle_step [m/s]
-  Real settle = 0;        ///< gas off, for so long before t = 0 [s]
+  std::optional<Real> courant;  ///< of the gas; the outer step is divided where it would be larger
+  Real impact_speed = 0;        ///< largest impact speed expected, for the bound on particle_step [m/s]
+  Real settle = 0;              ///< gas off, for so long before t = 0 [s]
   std::optional<SettleSpec> settle_until;  ///< in place of `settle`, which then is 0
 
   /// The longest that particles settle [s].

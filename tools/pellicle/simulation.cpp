@@ -94,6 +94,7 @@ void Simulation::resume() {
     wall.angular_impulse = file.read_vec3(path + "/angular_impulse");
     wall.contacts = file.read_int64(path + "/contacts");
   }
+  summary_.gas.load(file);
   settled_gravity_ = file.read_vec3("run/settled_gravity");
   settled_wall_ = file.read_vec3("run/settled_wall");
   settled_volume_time_ = file.read_double("run/settled_volume_time");
@@ -151,7 +152,11 @@ void Simulation::report_numerics() const {
     core::log().warn("feed {}: there was no room for all particles; {:.3g} {} wait to enter", i,
                      feeds_[i].waiting(time_.time()), feeds_[i].counts_particles() ? "particles" : "kg");
   }
-  if (gas_) core::log().info("largest Courant number of the gas: {:.3g}", largest_courant_);
+  const GasConvergence& gas = summary_.gas;
+  if (gas.steps > 0) {
+    core::log().info("largest Courant number of the gas: {:.3g}; {} of {} steps ended above outer_tolerance",
+                     gas.largest_courant_number, gas.steps_not_converged, gas.steps);
+  }
   if (crowded_steps_ > 0) {
     core::log().warn("in {} gas steps a transfer cell stayed below coupling.minimum_void_fraction",
                      crowded_steps_);
@@ -165,10 +170,13 @@ void Simulation::report_numerics() const {
 
 void Simulation::advance_outer_step() {
   feed_particles();
-  sample_gas();
-  move_particles();
-  deposit_particles();
-  if (!time_.settling()) move_gas();
+  const int parts = choose_parts();
+  for (int part = 0; part < parts; ++part) {
+    sample_gas();
+    move_particles(parts);
+    deposit_particles(parts);
+    if (!time_.settling()) move_gas(parts);
+  }
   watch_contacts();
   time_.advance();
   if (spec_.time.settle_until && time_.settling()) watch_settling();
@@ -206,6 +214,14 @@ void Simulation::feed_particles() {
   }
 }
 
+/// Equal parts of the outer step in which gas and particles take turns, for the Courant number asked for. Follows from the
+/// state alone, so that a run that resumes chooses the same.
+int Simulation::choose_parts() const {
+  if (!gas_ || !spec_.time.courant || time_.settling()) return 1;
+  const Real needed = gas_->courant_number(time_.gas_step()) / *spec_.time.courant;
+  return core::choose_parts(needed, particles_ ? time_.substeps() : 0);
+}
+
 void Simulation::sample_gas() {
   if (particles_) {
     const core::Timers::Scope scope(timers_, Part::neighbours);
@@ -217,35 +233,35 @@ void Simulation::sample_gas() {
   exchange_->compute_coefficients(particles_->particles());
 }
 
-void Simulation::move_particles() {
+void Simulation::move_particles(int parts) {
   if (!particles_) return;
-  summary_.particle_steps += static_cast<double>(particles_->particles().count) * time_.substeps();
+  const int substeps = time_.substeps() / parts;
+  summary_.particle_steps += static_cast<double>(particles_->particles().count) * substeps;
   if (!coupled()) {
-    particles_->advance(time_.substeps(), timers_);
+    particles_->advance(substeps, timers_);
     return;
   }
-  coupling::advance_particles(*particles_, time_.substeps(), exchange_->fluid_force(particles_->particles()),
+  coupling::advance_particles(*particles_, substeps, exchange_->fluid_force(particles_->particles()),
                               timers_);
 }
 
-void Simulation::deposit_particles() {
+void Simulation::deposit_particles(int parts) {
   if (!coupled()) return;
   const core::Timers::Scope scope(timers_, Part::coupling);
-  exchange_->deposit(particles_->particles(), time_.gas_step());
+  exchange_->deposit(particles_->particles(), time_.gas_step() / parts);
   if (exchange_->bound_report().cells_left_over > 0) ++crowded_steps_;
 }
 
-void Simulation::move_gas() {
+void Simulation::move_gas(int parts) {
   if (!gas_) return;
+  const Real dt = time_.gas_step() / parts;
   {
     const core::Timers::Scope scope(timers_, Part::gas);
-    const cfd::StepReport report =
-        gas_->update(time_.gas_step(), exchange_ ? exchange_->exchange() : no_particles_);
-    largest_courant_ = std::max(largest_courant_, report.courant_number);
+    summary_.gas.add(gas_->update(dt, exchange_ ? exchange_->exchange() : no_particles_), dt);
   }
   if (!coupled()) return;
   const core::Timers::Scope scope(timers_, Part::coupling);
-  exchange_->close_step(gas_->state(), time_.gas_step());
+  exchange_->close_step(gas_->state(), dt);
 }
 
 /// t = 0: the particles have settled, the gas begins around them, and the ledger opens.
@@ -415,6 +431,7 @@ void Simulation::write_checkpoint() {
     file.write(path + "/angular_impulse", walls_[w].angular_impulse);
     file.write(path + "/contacts", walls_[w].contacts);
   }
+  summary_.gas.save(file);
   file.write("run/settled_gravity", settled_gravity_);
   file.write("run/settled_wall", settled_wall_);
   file.write("run/settled_volume_time", settled_volume_time_);

@@ -55,10 +55,11 @@ class Simulation {
   // moves.
   void advance_outer_step();
   void feed_particles();
+  int choose_parts() const;
   void sample_gas();
-  void move_particles();
-  void deposit_particles();
-  void move_gas();
+  void move_particles(int parts);
+  void deposit_particles(int parts);
+  void move_gas(int parts);
   void release_gas();
   void watch_settling();
 
@@ -87,7 +88,6 @@ class Simulation {
   core::Timers timers_;
   core::Ledger ledger_;
   core::Schedule checkpoints_;
-  Real largest_courant_ = 0;
   std::int64_t crowded_steps_ = 0;  // in which the bound of the void fraction could not be kept
   std::int64_t crowded_walls_ = 0;  // times that a particle met more triangles than are compared
   Summary summary_;

@@ -64,6 +64,19 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   }
   json["threads"] = summary.threads;
   json["gas_steps"] = summary.gas_steps;
+  if (const GasConvergence& gas = summary.gas; gas.steps > 0) {
+    json["gas"] = {{"steps", gas.steps},
+                   {"smallest_step", gas.smallest_step},
+                   {"outer_iterations", gas.outer_iterations},
+                   {"pressure_iterations", gas.pressure_iterations},
+                   {"momentum_iterations", gas.momentum_iterations},
+                   {"steps_not_converged", gas.steps_not_converged},
+                   {"largest_velocity_change", gas.largest_velocity_change},
+                   {"largest_continuity_residual", gas.largest_continuity_residual},
+                   {"largest_momentum_residual", gas.largest_momentum_residual},
+                   {"largest_divergence", gas.largest_divergence},
+                   {"largest_courant_number", gas.largest_courant_number}};
+  }
   json["particles"] = summary.particles;
   json["particle_steps"] = summary.particle_steps;
   json["particle_steps_per_second"] = summary.particle_steps_per_second();
@@ -126,6 +139,20 @@ Summary read_summary(const std::filesystem::path& path) {
     }
     summary.threads = json.at("threads");
     summary.gas_steps = json.at("gas_steps");
+    if (json.contains("gas")) {
+      const Json& gas = json.at("gas");
+      summary.gas.steps = gas.at("steps");
+      summary.gas.smallest_step = gas.at("smallest_step");
+      summary.gas.outer_iterations = gas.at("outer_iterations");
+      summary.gas.pressure_iterations = gas.at("pressure_iterations");
+      summary.gas.momentum_iterations = gas.at("momentum_iterations");
+      summary.gas.steps_not_converged = gas.at("steps_not_converged");
+      summary.gas.largest_velocity_change = gas.at("largest_velocity_change");
+      summary.gas.largest_continuity_residual = gas.at("largest_continuity_residual");
+      summary.gas.largest_momentum_residual = gas.at("largest_momentum_residual");
+      summary.gas.largest_divergence = gas.at("largest_divergence");
+      summary.gas.largest_courant_number = gas.at("largest_courant_number");
+    }
     summary.particles = json.at("particles");
     summary.particle_steps = json.at("particle_steps");
     summary.contacts_per_particle = json.at("contacts_per_particle");
@@ -195,6 +222,21 @@ std::string report_text(const Summary& summary) {
     if (seconds <= 0) continue;
     line(fmt::format("  {}", core::part_names[part]),
          fmt::format("{:.1f} s, {:.1f} %", seconds, 100 * seconds / std::max(summary.wall_seconds, 1e-300)));
+  }
+  if (const GasConvergence& gas = summary.gas; gas.steps > 0) {
+    line("gas", fmt::format("{} steps, the smallest {:.3g} s; largest Courant number {:.3g}", gas.steps,
+                            gas.smallest_step, gas.largest_courant_number));
+    const auto per_step = [&](std::int64_t count) {
+      return static_cast<double>(count) / static_cast<double>(gas.steps);
+    };
+    line("  iterations a step", fmt::format("{:.2f} outer, {:.1f} of the pressure, {:.1f} of the velocity",
+                                            per_step(gas.outer_iterations), per_step(gas.pressure_iterations),
+                                            per_step(gas.momentum_iterations)));
+    line("  above outer_tolerance", fmt::format("{} steps", gas.steps_not_converged));
+    line("  last change of velocities", fmt::format("{:.3g} of the largest", gas.largest_velocity_change));
+    line("  continuity", fmt::format("{:.3g} of the throughput, {:.3g} of a cell's gas in a step",
+                                     gas.largest_continuity_residual, gas.largest_divergence));
+    line("  momentum", fmt::format("{:.3g}", gas.largest_momentum_residual));
   }
   line("particles", fmt::format("{}", summary.particles));
   if (summary.particles > 0) {

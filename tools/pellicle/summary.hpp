@@ -11,6 +11,7 @@
 #include "core/timers.hpp"
 #include "core/types.hpp"
 #include "tools/pellicle/gas_boundary_figures.hpp"
+#include "tools/pellicle/gas_convergence.hpp"
 #include "tools/pellicle/wall_figures.hpp"
 
 namespace pellicle::tools {
@@ -43,8 +44,9 @@ struct Summary {
   double mass_left = 0;        ///< with them [kg]
   SideFigures left_by_side{};  ///< the same for each side
   std::int64_t particles_fed = 0;
-  double mass_fed = 0;  ///< [kg]
-  std::int64_t gas_steps = 0;
+  double mass_fed = 0;         ///< [kg]
+  std::int64_t gas_steps = 0;  ///< outer steps with gas
+  GasConvergence gas;
   std::vector<WallFigures> walls;  ///< what each wall received
   std::vector<GasBoundaryFigures> gas_boundaries;
 
