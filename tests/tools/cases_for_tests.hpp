@@ -66,6 +66,9 @@ output:
     - {name: bead, particle: 7}
     - {name: whole, bed: {}}
     - {name: out, side: top, quantities: [left_mass, outflow_rate]}
+    - {name: throat, plane: {axis: z, at: "40 mm", box: {min: ["10 mm", 0, 0], max: ["30 mm", "10 mm", 0]}, mean: flow}}
+    - {name: round, plane: {axis: x, at: "20 mm", disc: {centre: [0, "5 mm", "50 mm"], radius: "4 mm"}},
+       quantities: [mass_flow, pressure]}
   histograms:
     - {name: speeds, quantity: particle_speed, bins: 20, min: 0, max: 2, weight: mass, every: "0.5 s"}
 )";

@@ -475,6 +475,21 @@ TEST(CaseFile, RefinedGrid) {
   EXPECT_NE(text.find(shape), std::string::npos) << text << shape;
 }
 
+TEST(CaseErrors, PlaneProbes) {
+  EXPECT_EQ(bed_errors("output.probes.round.plane.at=50 mm"),
+            "--set: output.probes.round.plane.at: 0.05 m is outside the domain; 0 to 0.04 m");
+  EXPECT_EQ(bed_errors("output.probes.round.plane.disc.centre=[0, 0, 1]")
+                    .find("plane.disc: it has no part in the domain along z") != std::string::npos,
+            true);
+  EXPECT_EQ(bed_errors("output.probes.round.plane.box={min: [0, 0, 0], max: [1, 1, 1]}")
+                    .find("plane.disc: there is a box too; one of the two") != std::string::npos,
+            true);
+  EXPECT_EQ(bed_errors("output.probes.round.quantities=[bed_height]")
+                    .find("bed_height does not fit this kind of probe; volume_flow, mass_flow, open_area, "
+                          "gas_velocity_x") != std::string::npos,
+            true);
+}
+
 TEST(CaseErrors, Outputs) {
   EXPECT_EQ(bed_errors("output.lines.low.from=[-1 mm, 5 mm, 20 mm]"),
             "--set: output.lines.low.from: [-0.001, 0.005, 0.02] m is outside the domain; within [0, 0, 0] "
@@ -513,7 +528,7 @@ TEST(CaseErrors, Outputs) {
           .substr(0, 75),
       "--set: output.lines.l.quantity: pressure needs gas, which the case has not;");
   EXPECT_EQ(errors(channel_case, {"output.probes=[{name: b, bed: {}}]"}),
-            "--set: output.probes.b.bed: the case has no particles; point");
+            "--set: output.probes.b.bed: the case has no particles; point or plane");
   EXPECT_EQ(errors(channel_case, {"output.histograms=[{name: h, quantity: particle_speed}]"}),
             "--set: output.histograms.h.quantity: a case without particles has none; no histograms");
 }

@@ -411,6 +411,32 @@ class Checker {
     }
   }
 
+  void check_plane(const ProbeSpec& probe) {
+    const PlaneProbeSpec& plane = *probe.plane;
+    if (!spec_.gas)
+      wrong(probe.where, "plane", "a plane shows the gas, which the case has not; particle or bed");
+    const Box& box = spec_.domain.box;
+    const Real low = box.min[plane.axis];
+    const Real high = box.max[plane.axis];
+    const Real slack = 1e-9 * (high - low);
+    if (plane.at < low - slack || plane.at > high + slack) {
+      wrong(probe.where, "plane.at",
+            fmt::format("{:g} m is outside the domain; {:g} to {:g} m", plane.at, low, high));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis == plane.axis) continue;
+      const bool misses_box =
+          plane.box && !(plane.box->min[axis] < box.max[axis] && plane.box->max[axis] > box.min[axis]);
+      const bool misses_disc =
+          plane.disc && (plane.disc->centre[axis] + plane.disc->radius <= box.min[axis] ||
+                         plane.disc->centre[axis] - plane.disc->radius >= box.max[axis]);
+      if (!misses_box && !misses_disc) continue;
+      wrong(probe.where, misses_box ? "plane.box" : "plane.disc",
+            fmt::format("it has no part in the domain along {}; {}", "xyz"[axis], domain_text()));
+      return;
+    }
+  }
+
   void check_probe(const ProbeSpec& probe) {
     if (probe.point) {
       if (!spec_.gas)
@@ -422,9 +448,14 @@ class Checker {
       for (const auto& name : probe.quantities) {
         if (spec_.gas) check_carried(probe.where, "quantities", name);
       }
+    } else if (probe.plane) {
+      check_plane(probe);
+      for (const auto& name : probe.quantities) {
+        if (spec_.gas) check_carried(probe.where, "quantities", name);
+      }
     } else if (spec_.particles.empty()) {
       wrong(probe.where, probe.bed ? "bed" : (probe.wall ? "wall" : (probe.side ? "side" : "particle")),
-            "the case has no particles; point");
+            "the case has no particles; point or plane");
     } else if (probe.side && !open(static_cast<cfd::Side>(*probe.side))) {
       wrong(probe.where, "side",
             fmt::format("nothing can leave through {}; a side that is named in open of the box of walls",

@@ -59,22 +59,49 @@ void describe_line(Keys& keys, LineSpec& line) {
 /// The quantities that a kind of probe may show.
 core::ModelList quantities_of(const ProbeSpec& probe) {
   if (probe.point) return gas_quantities;
+  if (probe.plane) return plane_probe_quantities;
   if (probe.particle) return particle_quantities;
   if (probe.wall) return wall_quantities;
   if (probe.side) return side_quantities;
   return bed_quantities;
 }
 
+void describe_plane_probe(Keys& keys, PlaneProbeSpec& plane) {
+  static constexpr core::ModelInfo weights[] = {
+      {"area", "each part of the plane counts by its open area"},
+      {"flow", "by the gas that passes it, which back flow lowers"}};
+  std::optional<int> axis = plane.axis;
+  if (keys.reading()) axis.reset();
+  keys.choice({"axis", "at right angles to the plane", Need::required}, axes, axis);
+  if (axis) plane.axis = *axis;
+  keys.real({"at", "coordinate of the plane along the axis", Need::required}, {dimension::length}, plane.at);
+  keys.section<Box>({"box", "the part of the plane inside this box", Need::has_default, "the whole plane"},
+                    plane.box, describe_flat_box);
+  keys.section<PlaneProbeSpec::Disc>(
+      {"disc", "the part of the plane within a circle", Need::has_default, "the whole plane"}, plane.disc,
+      [](Keys& inner, PlaneProbeSpec::Disc& disc) {
+        inner.vector({"centre", "of the circle", Need::required}, {dimension::length}, disc.centre);
+        inner.real({"radius", "of the circle", Need::required}, {dimension::length, range::positive},
+                   disc.radius);
+      });
+  if (keys.reading() && plane.box && plane.disc) keys.problem("disc", "there is a box too; one of the two");
+  std::optional<int> weight = plane.by_flow ? 1 : 0;
+  keys.choice({"mean", "how quantities of the gas are averaged"}, weights, weight);
+  plane.by_flow = *weight == 1;
+}
+
 void describe_probe(Keys& keys, ProbeSpec& probe) {
   if (keys.reading()) probe.where = keys.where();
   keys.text({"name", "of the file probes/NAME.csv", Need::required}, TextRule::name, probe.name);
   keys.vector({"point", "gas at this point"}, {dimension::length}, probe.point);
+  keys.section<PlaneProbeSpec>({"plane", "gas over a plane across an axis, or a part of it"}, probe.plane,
+                               describe_plane_probe);
   keys.whole({"particle", "one particle by its id"}, {0}, probe.particle);
   keys.text({"wall", "forces and torques of the particles on the wall of this name"}, TextRule::name,
             probe.wall);
   keys.choice({"side", "particles that leave through this open side"}, domain_sides, probe.side);
   keys.mark({"bed", "all particles together"}, probe.bed);
-  keys.exactly_one({"point", "particle", "wall", "side", "bed"});
+  keys.exactly_one({"point", "plane", "particle", "wall", "side", "bed"});
   std::optional<std::vector<int>> positions;
   if (!probe.quantities.empty()) {
     positions.emplace();
@@ -125,25 +152,25 @@ void describe_histogram(Keys& keys, HistogramSpec& histogram) {
 }  // namespace
 
 void describe_output(Keys& keys, CaseSpec& spec) {
-  keys.section<OutputSpec>(
-      {"output", "what is written to the results folder, besides summary.json"}, spec.output,
-      [](Keys& inner, OutputSpec& output) {
-        inner.section<OutputSpec>({"checkpoint", "state from which a run can go on"}, output,
-                                  [](Keys& k, OutputSpec& o) {
-                                    k.real({"every", "simulated time between two; 0: only at the end"},
-                                           interval, o.checkpoint_every);
-                                  });
-        inner.section<SnapshotSpec>({"snapshots", "fields over time, for ParaView"}, output.snapshots,
-                                    describe_snapshots);
-        inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {}, output.lines,
-                             describe_line);
-        inner.list<ProbeSpec>(
-            {"probes",
-             "values over time at points, of single particles, of walls, of open sides, of the bed"},
-            {}, output.probes, describe_probe);
-        inner.list<HistogramSpec>({"histograms", "distributions over the particles"}, {}, output.histograms,
-                                  describe_histogram);
-      });
+  keys.section<OutputSpec>({"output", "what is written to the results folder, besides summary.json"},
+                           spec.output, [](Keys& inner, OutputSpec& output) {
+                             inner.section<OutputSpec>(
+                                 {"checkpoint", "state from which a run can go on"}, output,
+                                 [](Keys& k, OutputSpec& o) {
+                                   k.real({"every", "simulated time between two; 0: only at the end"},
+                                          interval, o.checkpoint_every);
+                                 });
+                             inner.section<SnapshotSpec>({"snapshots", "fields over time, for ParaView"},
+                                                         output.snapshots, describe_snapshots);
+                             inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {},
+                                                  output.lines, describe_line);
+                             inner.list<ProbeSpec>({"probes",
+                                                    "values over time at points, over planes, of single "
+                                                    "particles, of walls, of open sides, of the bed"},
+                                                   {}, output.probes, describe_probe);
+                             inner.list<HistogramSpec>({"histograms", "distributions over the particles"}, {},
+                                                       output.histograms, describe_histogram);
+                           });
 }
 
 }  // namespace pellicle::tools

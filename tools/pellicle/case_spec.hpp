@@ -300,11 +300,25 @@ struct LineSpec {
   WindowSpec average;
 };
 
-/// A time series at a point, of one particle, of a wall, of an open side, or of the whole bed.
+/// A part of a plane across an axis.
+struct PlaneProbeSpec {
+  struct Disc {
+    Vec3 centre;  ///< [m]; its coordinate along the axis does not matter
+    Real radius = 0;
+  };
+  int axis = 2;
+  Real at = 0;               ///< [m]
+  std::optional<Box> box;    ///< the part inside it; its extent along the axis does not matter
+  std::optional<Disc> disc;  ///< the part inside it
+  bool by_flow = false;      ///< means are weighted with the flow, not with the area
+};
+
+/// A time series at a point, over a plane, of one particle, of a wall, of an open side, or of the whole bed.
 struct ProbeSpec {
   std::string where;
   std::string name;
-  std::optional<Vec3> point;        ///< exactly one of the five is set [m]
+  std::optional<Vec3> point;  ///< exactly one of the six is set [m]
+  std::optional<PlaneProbeSpec> plane;
   std::optional<Index> particle;    ///< id
   std::optional<std::string> wall;  ///< name
   std::optional<int> side;          ///< a position in `domain_sides`

@@ -1,6 +1,8 @@
 // The gas as outputs see it: views of the solver's fields, and the numbers that can be shown of a cell.
 #pragma once
 
+#include <array>
+
 #include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
@@ -20,6 +22,9 @@ struct GasFields {
   HostArray<const Real> temperature;        ///< [K]
   HostArray<const Real> vapour_mass_fraction;
   Real reference_pressure = 0;  ///< absolute [Pa]
+  // Of faces, numbered as cfd::FaceField.
+  std::array<HostArray<const Real>, 3> volume_flux{};  ///< of gas along +axis [m3/s]
+  std::array<HostArray<const Real>, 3> open_area{};    ///< [m2]
 
   Real void_fraction_of(Index cell) const { return void_fraction.extent(0) > 0 ? void_fraction(cell) : 1; }
 };

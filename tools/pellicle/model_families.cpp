@@ -37,8 +37,9 @@ constexpr std::array<core::ModelInfo, N + M> join(const std::array<core::ModelIn
   return joined;
 }
 constexpr auto line_quantity_list = join(particle_quantities, gas_quantities);
-constexpr auto probe_quantity_list =
-    join(join(join(line_quantity_list, bed_quantities), wall_quantities), side_quantities);
+constexpr auto probe_quantity_list = join(
+    join(join(join(line_quantity_list, bed_quantities), wall_quantities), side_quantities), plane_quantities);
+constexpr auto plane_probe_quantity_list = join(plane_quantities, gas_quantities);
 
 }  // namespace
 
@@ -54,6 +55,7 @@ constinit const core::ModelList drag_laws = core::model_list<coupling::DragLaw>(
 constinit const core::ModelList depositions = core::model_list<coupling::Deposition>();
 constinit const core::ModelList line_quantities = line_quantity_list;
 constinit const core::ModelList probe_quantities = probe_quantity_list;
+constinit const core::ModelList plane_probe_quantities = plane_probe_quantity_list;
 
 const std::vector<ModelFamily>& model_families() {
   static const std::vector<ModelFamily> families{
@@ -78,10 +80,12 @@ const std::vector<ModelFamily>& quantity_families() {
   static const std::vector<ModelFamily> families{
       {"quantities.particles", "Of particles, for lines, histograms and probes of one particle",
        particle_quantities},
-      {"quantities.gas", "Of the gas, for lines and probes of a point", gas_quantities},
+      {"quantities.gas", "Of the gas, for lines, probes of a point and, as means, of a plane",
+       gas_quantities},
       {"quantities.bed", "Of the whole bed, for probes", bed_quantities},
       {"quantities.wall", "Of a wall, for probes; means over the time since the row before", wall_quantities},
       {"quantities.side", "Of an open side, for probes", side_quantities},
+      {"quantities.plane", "Of the gas through a plane, for probes", plane_quantities},
   };
   return families;
 }

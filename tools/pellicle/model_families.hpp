@@ -24,6 +24,7 @@ extern const core::ModelList depositions;
 /// Quantities of lines: of particles, then of the gas. Quantities of probes also have those of the bed.
 extern const core::ModelList line_quantities;
 extern const core::ModelList probe_quantities;
+extern const core::ModelList plane_probe_quantities;  // plane_quantities, then gas_quantities
 
 /// One family as `pellicle models` shows it.
 struct ModelFamily {

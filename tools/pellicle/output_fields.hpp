@@ -107,6 +107,13 @@ inline constexpr std::array<core::ModelInfo, 4> side_quantities{{
     {"left_particles", "number of all that have left, settling included [-]"},
 }};
 
+/// Columns of a plane probe besides gas_quantities, which are then means over the plane.
+inline constexpr std::array<core::ModelInfo, 3> plane_quantities{{
+    {"volume_flow", "gas that passes the plane along its axis [m3/s]"},
+    {"mass_flow", "mass of the gas that passes the plane along its axis [kg/s]"},
+    {"open_area", "area of the plane's part that is in the domain and not behind a wall [m2]"},
+}};
+
 /// All quantities a line may show: particle_quantities, then gas_quantities.
 std::string line_quantity_names();
 

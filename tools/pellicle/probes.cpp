@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "tools/pellicle/model_families.hpp"
 #include "tools/pellicle/output_fields.hpp"
 #include "tools/pellicle/particle_quantities.hpp"
 
@@ -32,6 +33,7 @@ core::ModelList known_quantities(const ProbeSpec& spec) {
   if (spec.particle) return particle_quantities;
   if (spec.wall) return wall_quantities;
   if (spec.side) return side_quantities;
+  if (spec.plane) return plane_probe_quantities;
   return gas_quantities;
 }
 
@@ -52,6 +54,12 @@ Index cell_of(const ProbeSpec& spec, const CartesianGrid* grid) {
     }
   }
   return grid->index(grid->locate(0, at.x), grid->locate(1, at.y), grid->locate(2, at.z));
+}
+
+std::optional<PlaneSection> section_of(const ProbeSpec& spec, const CartesianGrid* grid) {
+  if (!spec.plane) return std::nullopt;
+  if (grid == nullptr) throw InputError(spec.where + ": a plane probe shows the gas, and this case has none");
+  return PlaneSection(*spec.plane, *grid);
 }
 
 /// Entry of wall_quantities: means over `interval`, of which there is none at the first row.
@@ -100,6 +108,7 @@ Probes::Probes(const std::vector<ProbeSpec>& specs, core::TimeControl& time, con
                        schedule,
                        std::move(quantities),
                        cell,
+                       section_of(spec, gas_grid),
                        core::CsvSeries(folder.csv("probes", spec.name), probe_header(spec), resume_time),
                        {},
                        {},
@@ -136,6 +145,8 @@ void Probes::append(Probe& probe, const OutputState& state) {
       row.push_back(side_quantity(quantity, now, probe.left_before, state.time - probe.time_before));
     probe.left_before = now;
     probe.time_before = state.time;
+  } else if (probe.plane) {
+    for (const int quantity : probe.quantities) row.push_back(probe.plane->quantity(*state.gas, quantity));
   } else {
     for (const int quantity : probe.quantities) row.push_back(gas_quantity(*state.gas, quantity, probe.cell));
   }

@@ -1,4 +1,4 @@
-// Time series: at a point of the gas, of one particle, of a wall, of an open side, of the whole bed (probes/NAME.csv), and
+// Time series: at a point of the gas, over a plane, of one particle, of a wall, of an open side, of the whole bed (probes/NAME.csv), and
 // distributions of a particle quantity (histograms/NAME.csv).
 #pragma once
 
@@ -13,6 +13,7 @@
 #include "tools/pellicle/case_spec.hpp"
 #include "tools/pellicle/find_particle.hpp"
 #include "tools/pellicle/gas_fields.hpp"
+#include "tools/pellicle/plane_section.hpp"
 #include "tools/pellicle/results_folder.hpp"
 #include "tools/pellicle/wall_figures.hpp"
 
@@ -55,6 +56,7 @@ class Probes {
     core::Schedule schedule;
     std::vector<int> quantities;  ///< positions in the list of the probe's kind
     Index cell = 0;               ///< of a point
+    std::optional<PlaneSection> plane;
     core::CsvSeries file;
     WallFigures before{};           ///< at the last row, of a wall
     dem::SideTotals left_before{};  ///< at the last row, of a side

@@ -402,6 +402,10 @@ void Simulation::write_outputs(bool last) {
               gas.scalars[index_of(cfd::Scalar::temperature)],
               gas.scalars[index_of(cfd::Scalar::moisture)],
               spec_.gas->options.reference_pressure};
+    for (std::size_t a = 0; a < 3; ++a) {
+      fields.volume_flux[a] = gas.volume_flux[a];
+      fields.open_area[a] = gas_->geometry().area[a];
+    }
     state.gas = &fields;
   }
   outputs_->sample(state, last);

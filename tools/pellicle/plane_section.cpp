@@ -1,0 +1,181 @@
+#include "tools/pellicle/plane_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tools/pellicle/output_fields.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+/// Integral of the half height of a circle of radius r from its centre to x.
+Real half_segment(Real r, Real x) {
+  return 0.5 * (x * std::sqrt(std::max(r * r - x * x, Real{0})) + r * r * std::asin(x / r));
+}
+
+/// Area of the circle's part with coordinates below (a, b).
+Real circle_below(Real r, Real a, Real b) {
+  a = std::clamp(a, -r, r);
+  b = std::clamp(b, -r, r);
+  // Beyond |x| = c the level b is outside the circle: above all of it if b > 0, below all of it if b < 0.
+  const Real c = std::sqrt(std::max(r * r - b * b, Real{0}));
+  const auto whole = [&](Real from, Real to) {
+    return to > from ? 2 * (half_segment(r, to) - half_segment(r, from)) : 0;
+  };
+  const Real inner = std::clamp(a, -c, c);
+  const Real cut = b * (inner + c) + half_segment(r, inner) - half_segment(r, -c);
+  return b >= 0 ? whole(-r, std::min(a, -c)) + cut + whole(c, a) : cut;
+}
+
+Real box_share(const Box& box, const CartesianGrid& grid, const std::array<int, 2>& across,
+               const std::array<Index, 2>& place) {
+  Real share = 1;
+  for (std::size_t d = 0; d < 2; ++d) {
+    const auto& faces = grid.faces(across[d]);
+    const Real low = faces[static_cast<std::size_t>(place[d])];
+    const Real high = faces[static_cast<std::size_t>(place[d]) + 1];
+    const Real inside = std::min(high, box.max[across[d]]) - std::max(low, box.min[across[d]]);
+    share *= std::max(inside, Real{0}) / (high - low);
+  }
+  return share;
+}
+
+Real disc_share(const PlaneProbeSpec::Disc& disc, const CartesianGrid& grid, const std::array<int, 2>& across,
+                const std::array<Index, 2>& place) {
+  std::array<Real, 2> low{}, high{};
+  for (std::size_t d = 0; d < 2; ++d) {
+    const auto& faces = grid.faces(across[d]);
+    low[d] = faces[static_cast<std::size_t>(place[d])] - disc.centre[across[d]];
+    high[d] = faces[static_cast<std::size_t>(place[d]) + 1] - disc.centre[across[d]];
+  }
+  return circle_rectangle_area(disc.radius, low[0], low[1], high[0], high[1]) /
+         ((high[0] - low[0]) * (high[1] - low[1]));
+}
+
+}  // namespace
+
+Real circle_rectangle_area(Real r, Real x0, Real y0, Real x1, Real y1) {
+  const Real area =
+      circle_below(r, x1, y1) - circle_below(r, x0, y1) - circle_below(r, x1, y0) + circle_below(r, x0, y0);
+  return std::max(area, Real{0});
+}
+
+PlaneSection::PlaneSection(const PlaneProbeSpec& spec, const CartesianGrid& grid)
+    : axis_(spec.axis), by_flow_(spec.by_flow) {
+  const std::array<int, 2> across{(axis_ + 1) % 3, (axis_ + 2) % 3};
+  const Index n = grid.cells()[axis_];
+  const auto& faces = grid.faces(axis_);
+  // Not CartesianGrid::locate: the upper side of a periodic domain is a plane of its last cells.
+  const auto next = std::upper_bound(faces.begin(), faces.end(), spec.at);
+  const Index layer = std::clamp(static_cast<Index>(next - faces.begin()) - 1, Index{0}, n - 1);
+  plus_weight_ = std::clamp((spec.at - faces[static_cast<std::size_t>(layer)]) / grid.width(axis_, layer),
+                            Real{0}, Real{1});
+  const bool upwards = plus_weight_ > 0.5;
+  Index other = layer + (upwards ? 1 : -1);
+  if (grid.periodic(axis_)) other = (other + n) % n;
+  const bool at_side = other < 0 || other >= n || other == layer;
+  if (!at_side) {
+    const Real distance = 0.5 * (grid.width(axis_, layer) + grid.width(axis_, other));
+    partner_weight_ = std::abs(plus_weight_ - 0.5) * grid.width(axis_, layer) / distance;
+  }
+
+  const Index3 cells = grid.cells();
+  const auto face = [&](const Index3& at, Index position) {
+    Index3 size = cells;
+    ++size[axis_];
+    Index3 place = at;
+    place[axis_] = position;
+    return place.x + size.x * (place.y + size.y * place.z);
+  };
+  for (Index q = 0; q < cells[across[1]]; ++q) {
+    for (Index p = 0; p < cells[across[0]]; ++p) {
+      Part part;
+      part.share = 1;
+      if (spec.box) part.share *= box_share(*spec.box, grid, across, {p, q});
+      if (spec.disc) part.share *= disc_share(*spec.disc, grid, across, {p, q});
+      if (!(part.share > 0)) continue;
+      Index3 at;
+      at[axis_] = layer;
+      at[across[0]] = p;
+      at[across[1]] = q;
+      part.minus = face(at, layer);
+      part.plus = face(at, layer + 1);
+      part.between = upwards ? part.plus : part.minus;
+      part.cell = part.partner = grid.index(at.x, at.y, at.z);
+      if (!at_side) {
+        at[axis_] = other;
+        part.partner = grid.index(at.x, at.y, at.z);
+      }
+      parts_.push_back(part);
+    }
+  }
+}
+
+Real PlaneSection::at_plane(const std::array<HostArray<const Real>, 3>& faces, const Part& part) const {
+  const auto& values = faces[static_cast<std::size_t>(axis_)];
+  return part.share * ((1 - plus_weight_) * values(part.minus) + plus_weight_ * values(part.plus));
+}
+
+template <class Value>
+Real PlaneSection::between_cells(const GasFields& gas, const Part& part, Value&& value) const {
+  const Real own = value(part.cell);
+  // Beyond a face that nothing passes the gas is another one.
+  const bool alone =
+      partner_weight_ == 0 || !(gas.open_area[static_cast<std::size_t>(axis_)](part.between) > 0);
+  return alone ? own : own + partner_weight_ * (value(part.partner) - own);
+}
+
+Real PlaneSection::volume_flow(const GasFields& gas) const {
+  Real sum = 0;
+  for (const Part& part : parts_) sum += at_plane(gas.volume_flux, part);
+  return sum;
+}
+
+Real PlaneSection::mass_flow(const GasFields& gas) const {
+  Real sum = 0;
+  for (const Part& part : parts_) {
+    const Real flow = at_plane(gas.volume_flux, part);
+    if (flow != 0) sum += flow * between_cells(gas, part, [&](Index cell) { return gas.density(cell); });
+  }
+  return sum;
+}
+
+Real PlaneSection::open_area(const GasFields& gas) const {
+  Real sum = 0;
+  for (const Part& part : parts_) sum += at_plane(gas.open_area, part);
+  return sum;
+}
+
+Real PlaneSection::mean(const GasFields& gas, int quantity) const {
+  Real sum = 0;
+  Real total = 0;
+  for (const Part& part : parts_) {
+    const Real weight = at_plane(by_flow_ ? gas.volume_flux : gas.open_area, part);
+    if (weight == 0) continue;
+    sum += weight *
+           between_cells(gas, part, [&](Index cell) { return gas_quantity(gas, quantity, cell); });
+    total += weight;
+  }
+  return total != 0 ? sum / total : std::numeric_limits<Real>::quiet_NaN();
+}
+
+Real PlaneSection::quantity(const GasFields& gas, int quantity) const {
+  switch (quantity) {
+    case 0:
+      return volume_flow(gas);
+    case 1:
+      return mass_flow(gas);
+    case 2:
+      return open_area(gas);
+    default:
+      return mean(gas, quantity - static_cast<int>(plane_quantities.size()));
+  }
+}
+static_assert(plane_quantities.size() == 3 && plane_quantities[0].name == "volume_flow" &&
+                  plane_quantities[1].name == "mass_flow" && plane_quantities[2].name == "open_area",
+              "the codes above are positions in plane_quantities");
+
+}  // namespace pellicle::tools
