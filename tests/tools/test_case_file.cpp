@@ -476,6 +476,10 @@ TEST(CaseFile, RefinedGrid) {
 }
 
 TEST(CaseErrors, PlaneProbes) {
+  // All that a gas without temperature and moisture has.
+  EXPECT_EQ(errors(channel_case,
+                   {"output.probes=[{name: p, point: [0.5, 0.5, 0.5]}, {name: q, plane: {axis: z, at: 1}}]"}),
+            "no error");
   EXPECT_EQ(bed_errors("output.probes.round.plane.at=50 mm"),
             "--set: output.probes.round.plane.at: 0.05 m is outside the domain; 0 to 0.04 m");
   EXPECT_EQ(bed_errors("output.probes.round.plane.disc.centre=[0, 0, 1]")

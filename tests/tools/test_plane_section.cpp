@@ -86,16 +86,17 @@ struct Gas {
 constexpr int pressure_quantity = 7;  // of gas_quantities
 
 CartesianGrid stretched() {
-  return CartesianGrid({{{0, 0.2, 0.5, 1}, {0, 0.3, 1, 1.2, 2}, {0, 0.5, 0.7, 1.9, 3}}}, {false, false, false});
+  return CartesianGrid({{{0, 0.2, 0.5, 1}, {0, 0.3, 1, 1.2, 2}, {0, 0.5, 0.7, 1.9, 3}}},
+                       {false, false, false});
 }
 
 }  // namespace
 
 // Against sums over 2000 x 2000 points, of which a step of the edge is one in a thousand of the radius.
 TEST(PlaneSection, CircleAndRectangle) {
-  const std::vector<std::array<Real, 4>> rectangles{{-2, -2, 2, 2},      {0, 0, 2, 2},       {0.5, -2, 2, 2},
-                                                    {-0.3, 0.2, 0.4, 0.9}, {0.6, 0.6, 1, 1},  {0.8, 0.8, 1, 1},
-                                                    {-2, 0.95, 2, 3},    {-0.1, -0.1, 0.1, 0.1}, {-1.5, -0.9, -0.2, 0.1}};
+  const std::vector<std::array<Real, 4>> rectangles{
+      {-2, -2, 2, 2},   {0, 0, 2, 2},     {0.5, -2, 2, 2},        {-0.3, 0.2, 0.4, 0.9},  {0.6, 0.6, 1, 1},
+      {0.8, 0.8, 1, 1}, {-2, 0.95, 2, 3}, {-0.1, -0.1, 0.1, 0.1}, {-1.5, -0.9, -0.2, 0.1}};
   for (const auto& [x0, y0, x1, y1] : rectangles) {
     const int n = 2000;
     int inside = 0;
@@ -132,20 +133,23 @@ TEST(PlaneSection, LinearFieldsAreExact) {
       EXPECT_NEAR(plane.quantity(gas.fields, 1), 1.2 * area * (2 + 3 * at), 1e-12);
       Vec3 middle = 0.5 * size;
       middle[axis] = at;
-      EXPECT_NEAR(plane.mean(gas.fields, pressure_quantity), 100 + 5 * middle.x - 7 * middle.y + 11 * middle.z, 1e-10);
+      EXPECT_NEAR(plane.mean(gas.fields, pressure_quantity),
+                  100 + 5 * middle.x - 7 * middle.y + 11 * middle.z, 1e-10);
     }
     // On the sides the pressure is that of the cell.
     const PlaneSection side(across(axis, size[axis]), gas.grid);
     EXPECT_NEAR(side.volume_flow(gas.fields), area * (2 + 3 * size[axis]), 1e-12);
     Vec3 middle = 0.5 * size;
     middle[axis] = last;
-    EXPECT_NEAR(side.mean(gas.fields, pressure_quantity), 100 + 5 * middle.x - 7 * middle.y + 11 * middle.z, 1e-10);
+    EXPECT_NEAR(side.mean(gas.fields, pressure_quantity), 100 + 5 * middle.x - 7 * middle.y + 11 * middle.z,
+                1e-10);
   }
 }
 
 TEST(PlaneSection, PartsOfAPlane) {
   Gas gas(stretched());
-  gas.set(2, [](const Vec3&) { return 2.0; }, [](const Vec3&) { return 9.0; });
+  gas.set(
+      2, [](const Vec3&) { return 2.0; }, [](const Vec3&) { return 9.0; });
   PlaneProbeSpec spec = across(2, 1);
   spec.box = Box{{0.1, 0.25, 0}, {0.6, 5, 0}};  // cuts cells, and reaches beyond the domain
   const PlaneSection part(spec, gas.grid);
@@ -162,7 +166,9 @@ TEST(PlaneSection, PartsOfAPlane) {
 TEST(PlaneSection, MeansByAreaAndByFlow) {
   Gas gas(CartesianGrid(Box{{0, 0, 0}, {1, 1, 1}}, {4, 1, 3}));
   const auto up = [](const Vec3& x) { return x.x < 0.25; };
-  gas.set(2, [&](const Vec3& x) { return up(x) ? 3.0 : -1.0; }, [&](const Vec3& x) { return up(x) ? 10.0 : 2.0; });
+  gas.set(
+      2, [&](const Vec3& x) { return up(x) ? 3.0 : -1.0; },
+      [&](const Vec3& x) { return up(x) ? 10.0 : 2.0; });
   PlaneProbeSpec spec = across(2, 0.4);
   EXPECT_NEAR(PlaneSection(spec, gas.grid).mean(gas.fields, pressure_quantity), 0.25 * 10 + 0.75 * 2, 1e-14);
   spec.by_flow = true;
@@ -174,7 +180,8 @@ TEST(PlaneSection, MeansByAreaAndByFlow) {
 // A wall closes half of the faces above the plane: it counts neither as area, nor does the gas beyond it.
 TEST(PlaneSection, ClosedFacesAreLeftOut) {
   Gas gas(CartesianGrid(Box{{0, 0, 0}, {1, 1, 1}}, {2, 1, 2}));
-  gas.set(2, [](const Vec3&) { return 1.0; }, [](const Vec3& x) { return x.z < 0.5 ? 4.0 : 8.0; });
+  gas.set(
+      2, [](const Vec3&) { return 1.0; }, [](const Vec3& x) { return x.z < 0.5 ? 4.0 : 8.0; });
   gas.area[2](2) = 0;  // between the cells with x < 0.5
   gas.flux[2](2) = 0;
   const PlaneSection between(across(2, 0.5), gas.grid);

@@ -9,6 +9,7 @@
 #include "dem/contact_laws.hpp"
 #include "tools/pellicle/case_checks.hpp"
 #include "tools/pellicle/case_file.hpp"
+#include "tools/pellicle/case_keys.hpp"
 
 namespace pellicle::tools {
 
@@ -86,6 +87,19 @@ bool make_refined(CaseSpec& spec, core::InputProblems& problems) {
   }
 }
 
+/// All that a probe can show, without what the gas does not carry.
+std::vector<std::string> all_quantities(const CaseSpec& spec, const ProbeSpec& probe) {
+  std::vector<std::string> names;
+  for (const auto& quantity : quantities_of(probe)) {
+    const bool warm = quantity.name == "gas_temperature" || quantity.name == "relative_humidity";
+    const bool moist = quantity.name == "vapour_mass_fraction" || quantity.name == "relative_humidity";
+    const bool there =
+        (!warm || (spec.gas && spec.gas->heat)) && (!moist || (spec.gas && spec.gas->moisture));
+    if (there) names.emplace_back(quantity.name);
+  }
+  return names;
+}
+
 }  // namespace
 
 void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
@@ -103,6 +117,9 @@ void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
   }
   for (auto& population : spec.particles) {
     if (population.feed && population.feed->to == 0) population.feed->to = spec.time.end;
+  }
+  for (auto& probe : spec.output.probes) {
+    if (probe.quantities.empty()) probe.quantities = all_quantities(spec, probe);
   }
   for (auto& line : spec.output.lines) {
     if (line.thickness == 0) line.thickness = default_thickness(spec, line);

@@ -31,6 +31,8 @@ void describe_cone(core::Keys& keys, dem::ConeRegion& cone);
 /// Numbers of cells, faces, or sizes with zones; these become cells when all has been read, see fill_in_defaults.
 void describe_gas_grid(core::Keys& keys, GridSpec& grid, const DomainSpec& domain);
 void describe_transfer_grid(core::Keys& keys, GridSpec& transfer, const DomainSpec& domain);
+/// The quantities that a probe of this kind may show.
+core::ModelList quantities_of(const ProbeSpec& probe);
 /// A number for which 0 stands for "not given".
 void real_or_unset(core::Keys& keys, const core::Key& key, const core::RealRule& rule, Real& value);
 /// The name of a material for its index; one that is not known becomes a rigid one or is refused.

@@ -56,16 +56,6 @@ void describe_line(Keys& keys, LineSpec& line) {
                            });
 }
 
-/// The quantities that a kind of probe may show.
-core::ModelList quantities_of(const ProbeSpec& probe) {
-  if (probe.point) return gas_quantities;
-  if (probe.plane) return plane_probe_quantities;
-  if (probe.particle) return particle_quantities;
-  if (probe.wall) return wall_quantities;
-  if (probe.side) return side_quantities;
-  return bed_quantities;
-}
-
 void describe_plane_probe(Keys& keys, PlaneProbeSpec& plane) {
   static constexpr core::ModelInfo weights[] = {
       {"area", "each part of the plane counts by its open area"},
@@ -113,10 +103,7 @@ void describe_probe(Keys& keys, ProbeSpec& probe) {
   if (!keys.reading()) return;
   const core::ModelList allowed = quantities_of(probe);
   probe.quantities.clear();
-  if (!positions) {
-    for (const auto& quantity : allowed) probe.quantities.emplace_back(quantity.name);
-    return;
-  }
+  if (!positions) return;  // filled in when all has been read
   for (const int position : *positions) {
     const auto name = probe_quantities[static_cast<std::size_t>(position)].name;
     probe.quantities.emplace_back(name);
@@ -150,6 +137,15 @@ void describe_histogram(Keys& keys, HistogramSpec& histogram) {
 }
 
 }  // namespace
+
+core::ModelList quantities_of(const ProbeSpec& probe) {
+  if (probe.point) return gas_quantities;
+  if (probe.plane) return plane_probe_quantities;
+  if (probe.particle) return particle_quantities;
+  if (probe.wall) return wall_quantities;
+  if (probe.side) return side_quantities;
+  return bed_quantities;
+}
 
 void describe_output(Keys& keys, CaseSpec& spec) {
   keys.section<OutputSpec>({"output", "what is written to the results folder, besides summary.json"},

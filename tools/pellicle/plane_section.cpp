@@ -155,8 +155,7 @@ Real PlaneSection::mean(const GasFields& gas, int quantity) const {
   for (const Part& part : parts_) {
     const Real weight = at_plane(by_flow_ ? gas.volume_flux : gas.open_area, part);
     if (weight == 0) continue;
-    sum += weight *
-           between_cells(gas, part, [&](Index cell) { return gas_quantity(gas, quantity, cell); });
+    sum += weight * between_cells(gas, part, [&](Index cell) { return gas_quantity(gas, quantity, cell); });
     total += weight;
   }
   return total != 0 ? sum / total : std::numeric_limits<Real>::quiet_NaN();
