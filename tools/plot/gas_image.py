@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""Shows a field of the gas in a plane, with arrows for the velocity in it, from the snapshots of a results folder.
+"""Shows a field of the gas in a plane, with arrows or streamlines of the velocity in it, from the snapshots of a results
+folder.
 
     gas_image.py results/heated_cavity --field temperature -o cavity.png
     gas_image.py results/single_spout --field pressure --axis y --at 0.01 --time 2.5 -o spout.png
+    gas_image.py results/wurster_empty --field speed --largest 12 --streamlines -o jet.png
 
-Prints the smallest and the largest value shown.
+Prints the smallest and the largest value shown. Cells without gas, where nothing moves and the pressure is 0, stay white.
 """
 
 import argparse
@@ -25,6 +27,8 @@ def parse_arguments():
     parser.add_argument("--at", type=float, help="where the plane cuts that axis [m]; default: the middle")
     parser.add_argument("--time", type=float, default=np.inf, help="the snapshot nearest to it [s]; default: the last")
     parser.add_argument("--arrows", type=int, default=20, help="along the longer side; 0: none")
+    parser.add_argument("--streamlines", action="store_true", help="in place of arrows")
+    parser.add_argument("--largest", type=float, help="upper end of the colours; default: the largest value")
     parser.add_argument("-o", "--output", required=True, help="picture: .png, .pdf or .svg")
     return parser.parse_args()
 
@@ -32,6 +36,17 @@ def parse_arguments():
 def cut(values, normal, layer):
     """The layer of cells of an array nz x ny x nx, slower index first."""
     return np.take(values, layer, axis=2 - normal)
+
+
+def draw_streamlines(panel, faces, velocity, empty):
+    """Matplotlib wants them on points at equal distances: each takes the value of its cell."""
+    points = [np.linspace(f[0], f[-1], 301)[1:-1] for f in faces]
+    cells = [np.clip(np.searchsorted(f, p) - 1, 0, len(f) - 2) for f, p in zip(faces, points)]
+    pick = np.ix_(cells[1], cells[0])
+    u, v = (np.ma.masked_where(empty[pick], component[pick]) for component in velocity)
+    panel.streamplot(*points, u, v, density=1.6, color="white", linewidth=0.5, arrowsize=0.6)
+    panel.set_xlim(faces[0][0], faces[0][-1])
+    panel.set_ylim(faces[1][0], faces[1][-1])
 
 
 def main():
@@ -57,15 +72,27 @@ def main():
         known = [name for name in snapshot if name != "time" and np.ndim(snapshot[name]) == 3]
         fail(f"no field {arguments.field}; {', '.join(known)}" + (", speed" if "velocity" in snapshot else ""))
     shown = cut(values, normal, layer)
+    if "velocity" in snapshot and "pressure" in snapshot:
+        moving = np.any(cut(snapshot["velocity"], normal, layer) != 0, axis=-1)
+        shown = np.ma.masked_where(~moving & (cut(snapshot["pressure"], normal, layer) == 0), shown)
+        if shown.count() == 0:
+            shown = np.ma.array(shown.data)
     plt = use_style()
     width, height = (faces[axis][-1] - faces[axis][0] for axis in (across, up))
     figure, panel = plt.subplots(layout="constrained", figsize=(1.2 + 4.2 * min(1, width / height),
                                                                 0.6 + 4.2 * min(1, height / width)))
     panel.grid(False)
-    colours = panel.pcolormesh(faces[across], faces[up], shown, cmap="viridis", shading="flat")
+    colours = panel.pcolormesh(faces[across], faces[up], shown, cmap="viridis", shading="flat",
+                               vmax=arguments.largest)
     unit = UNITS.get(arguments.field)
-    figure.colorbar(colours, label=arguments.field.replace("_", " ") + (f" [{unit}]" if unit else ""), shrink=0.9)
-    if arguments.arrows > 0 and "velocity" in snapshot:
+    beyond = arguments.largest is not None and shown.max() > arguments.largest
+    figure.colorbar(colours, extend="max" if beyond else "neither", label=arguments.field.replace("_", " ") + (f" [{unit}]" if unit else ""),
+                    shrink=0.9)
+    if arguments.streamlines and "velocity" in snapshot:
+        draw_streamlines(panel, [faces[axis] for axis in (across, up)],
+                         [cut(snapshot["velocity"], normal, layer)[..., axis] for axis in (across, up)],
+                         np.ma.getmaskarray(shown))
+    elif arguments.arrows > 0 and "velocity" in snapshot:
         velocity = cut(snapshot["velocity"], normal, layer)
         stride = max(1, int(np.ceil(max(shown.shape) / arguments.arrows)))
         centres = [0.5 * (faces[axis][1:] + faces[axis][:-1])[stride // 2::stride] for axis in (across, up)]
@@ -75,7 +102,7 @@ def main():
     panel.set_xlabel(f"{'xyz'[across]} [m]")
     panel.set_ylabel(f"{'xyz'[up]} [m]")
     panel.set_title(f"t = {snapshot['time']:.4g} s, {arguments.axis} = {at:.4g} m")
-    figure.savefig(arguments.output)
+    figure.savefig(arguments.output, bbox_inches="tight")
     print(f"{arguments.output}: {arguments.field} from {shown.min():.6g} to {shown.max():.6g}")
 
 
