@@ -88,6 +88,16 @@ void describe_time(Keys& keys, TimeSpec& time) {
 void describe_box(Keys& keys, Box& box) { describe_corners(keys, box, false); }
 void describe_flat_box(Keys& keys, Box& box) { describe_corners(keys, box, true); }
 
+void describe_ring(Keys& keys, Real& radius, Real& inner_radius) {
+  keys.real({"radius", "of the disc", Need::required}, {dimension::length, range::positive}, radius);
+  keys.real({"inner_radius", "of the hole in its middle; 0: no hole"},
+            {dimension::length, range::non_negative}, inner_radius);
+  if (keys.reading() && keys.given("radius") && !(inner_radius < radius)) {
+    keys.problem("inner_radius", fmt::format("{:g} m is not below the radius of {:g} m; a smaller one",
+                                             inner_radius, radius));
+  }
+}
+
 void real_or_unset(Keys& keys, const Key& key, const core::RealRule& rule, Real& value) {
   std::optional<Real> held;
   if (value != 0) held = value;

@@ -33,6 +33,8 @@ void describe_gas_grid(core::Keys& keys, GridSpec& grid, const DomainSpec& domai
 void describe_transfer_grid(core::Keys& keys, GridSpec& transfer, const DomainSpec& domain);
 /// The quantities that a probe of this kind may show.
 core::ModelList quantities_of(const ProbeSpec& probe);
+/// The radii of a disc that may have a hole.
+void describe_ring(core::Keys& keys, Real& radius, Real& inner_radius);
 /// A number for which 0 stands for "not given".
 void real_or_unset(core::Keys& keys, const core::Key& key, const core::RealRule& rule, Real& value);
 /// The name of a material for its index; one that is not known becomes a rigid one or is refused.

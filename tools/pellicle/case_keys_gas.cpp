@@ -55,13 +55,7 @@ void put_together(const BoundaryKinds& kinds, cfd::BoundaryPatch& patch) {
 void describe_disc(Keys& keys, cfd::DiscRegion& disc) {
   keys.vector({"centre", "its middle; the coordinate across the side does not count", Need::required},
               {dimension::length}, disc.centre);
-  keys.real({"radius", "of the disc", Need::required}, {dimension::length, range::positive}, disc.radius);
-  keys.real({"inner_radius", "of the hole in its middle; 0: no hole"},
-            {dimension::length, range::non_negative}, disc.inner_radius);
-  if (keys.reading() && keys.given("radius") && !(disc.inner_radius < disc.radius)) {
-    keys.problem("inner_radius", fmt::format("{:g} m is not below the radius of {:g} m; a smaller one",
-                                             disc.inner_radius, disc.radius));
-  }
+  describe_ring(keys, disc.radius, disc.inner_radius);
 }
 
 void check_inside(Keys& keys, const Vec3& point, const Box& box) {

@@ -47,13 +47,7 @@ void describe_plane(Keys& keys, PlaneSpec& plane) {
 void describe_disc(Keys& keys, DiscSpec& disc) {
   keys.vector({"centre", "its middle", Need::required}, {dimension::length}, disc.centre);
   direction_key(keys, {"normal", "direction of its axis, of any length", Need::required}, disc.normal);
-  keys.real({"radius", "of the disc", Need::required}, {dimension::length, range::positive}, disc.radius);
-  keys.real({"inner_radius", "of the hole in its middle; 0: no hole"},
-            {dimension::length, range::non_negative}, disc.inner_radius);
-  if (keys.reading() && keys.given("radius") && !(disc.inner_radius < disc.radius)) {
-    keys.problem("inner_radius", fmt::format("{:g} m is not below the radius of {:g} m; a smaller one",
-                                             disc.inner_radius, disc.radius));
-  }
+  describe_ring(keys, disc.radius, disc.inner_radius);
 }
 
 void describe_spin(Keys& keys, SpinSpec& spin) {

@@ -5,63 +5,36 @@
 #include <limits>
 #include <utility>
 
+#include "cfd/plane_region.hpp"
 #include "tools/pellicle/output_fields.hpp"
 
 namespace pellicle::tools {
 
 namespace {
 
-/// Integral of the half height of a circle of radius r from its centre to x.
-Real half_segment(Real r, Real x) {
-  return 0.5 * (x * std::sqrt(std::max(r * r - x * x, Real{0})) + r * r * std::asin(x / r));
+/// The part of the plane that counts, in the coordinates across its axis.
+cfd::PlaneRegion make_region(const PlaneProbeSpec& spec, const Box& domain,
+                             const std::array<int, 2>& across) {
+  if (spec.disc) {
+    return {{spec.disc->centre[across[0]], spec.disc->centre[across[1]]}, spec.disc->radius, 0};
+  }
+  const Box& box = spec.box ? *spec.box : domain;
+  return cfd::PlaneRegion(
+      {{box.min[across[0]], box.min[across[1]]}, {box.max[across[0]], box.max[across[1]]}});
 }
 
-/// Area of the circle's part with coordinates below (a, b).
-Real circle_below(Real r, Real a, Real b) {
-  a = std::clamp(a, -r, r);
-  b = std::clamp(b, -r, r);
-  // Beyond |x| = c the level b is outside the circle: above all of it if b > 0, below all of it if b < 0.
-  const Real c = std::sqrt(std::max(r * r - b * b, Real{0}));
-  const auto whole = [&](Real from, Real to) {
-    return to > from ? 2 * (half_segment(r, to) - half_segment(r, from)) : 0;
-  };
-  const Real inner = std::clamp(a, -c, c);
-  const Real cut = b * (inner + c) + half_segment(r, inner) - half_segment(r, -c);
-  return b >= 0 ? whole(-r, std::min(a, -c)) + cut + whole(c, a) : cut;
-}
-
-Real box_share(const Box& box, const CartesianGrid& grid, const std::array<int, 2>& across,
-               const std::array<Index, 2>& place) {
-  Real share = 1;
+cfd::Rectangle cell_section(const CartesianGrid& grid, const std::array<int, 2>& across,
+                            const std::array<Index, 2>& place) {
+  cfd::Rectangle cell;
   for (std::size_t d = 0; d < 2; ++d) {
     const auto& faces = grid.faces(across[d]);
-    const Real low = faces[static_cast<std::size_t>(place[d])];
-    const Real high = faces[static_cast<std::size_t>(place[d]) + 1];
-    const Real inside = std::min(high, box.max[across[d]]) - std::max(low, box.min[across[d]]);
-    share *= std::max(inside, Real{0}) / (high - low);
+    cell.min[d] = faces[static_cast<std::size_t>(place[d])];
+    cell.max[d] = faces[static_cast<std::size_t>(place[d]) + 1];
   }
-  return share;
-}
-
-Real disc_share(const PlaneProbeSpec::Disc& disc, const CartesianGrid& grid, const std::array<int, 2>& across,
-                const std::array<Index, 2>& place) {
-  std::array<Real, 2> low{}, high{};
-  for (std::size_t d = 0; d < 2; ++d) {
-    const auto& faces = grid.faces(across[d]);
-    low[d] = faces[static_cast<std::size_t>(place[d])] - disc.centre[across[d]];
-    high[d] = faces[static_cast<std::size_t>(place[d]) + 1] - disc.centre[across[d]];
-  }
-  return circle_rectangle_area(disc.radius, low[0], low[1], high[0], high[1]) /
-         ((high[0] - low[0]) * (high[1] - low[1]));
+  return cell;
 }
 
 }  // namespace
-
-Real circle_rectangle_area(Real r, Real x0, Real y0, Real x1, Real y1) {
-  const Real area =
-      circle_below(r, x1, y1) - circle_below(r, x0, y1) - circle_below(r, x1, y0) + circle_below(r, x0, y0);
-  return std::max(area, Real{0});
-}
 
 PlaneSection::PlaneSection(const PlaneProbeSpec& spec, const CartesianGrid& grid)
     : axis_(spec.axis), by_flow_(spec.by_flow) {
@@ -82,6 +55,7 @@ PlaneSection::PlaneSection(const PlaneProbeSpec& spec, const CartesianGrid& grid
     partner_weight_ = std::abs(plus_weight_ - 0.5) * grid.width(axis_, layer) / distance;
   }
 
+  const cfd::PlaneRegion region = make_region(spec, grid.box(), across);
   const Index3 cells = grid.cells();
   const auto face = [&](const Index3& at, Index position) {
     Index3 size = cells;
@@ -93,9 +67,8 @@ PlaneSection::PlaneSection(const PlaneProbeSpec& spec, const CartesianGrid& grid
   for (Index q = 0; q < cells[across[1]]; ++q) {
     for (Index p = 0; p < cells[across[0]]; ++p) {
       Part part;
-      part.share = 1;
-      if (spec.box) part.share *= box_share(*spec.box, grid, across, {p, q});
-      if (spec.disc) part.share *= disc_share(*spec.disc, grid, across, {p, q});
+      const cfd::Rectangle cell = cell_section(grid, across, {p, q});
+      part.share = region.area_within(cell) / cell.area();
       if (!(part.share > 0)) continue;
       Index3 at;
       at[axis_] = layer;

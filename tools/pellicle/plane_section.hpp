@@ -11,9 +11,6 @@
 
 namespace pellicle::tools {
 
-/// Area that a circle of radius r about the origin and the rectangle from (x0, y0) to (x1, y1) share.
-Real circle_rectangle_area(Real r, Real x0, Real y0, Real x1, Real y1);
-
 /// The plane cuts one layer of cells. The flow through it is linear between those through the layer's two faces, which
 /// satisfy continuity; a quantity is linear between cell centres. Cells cut by the edge of a box or disc count by their
 /// share. Areas are those that walls within the gas leave open.
