@@ -94,6 +94,7 @@ void CellSums::compute(const Footprint& footprint, const DeviceArray<CellLoad>& 
         Kokkos::view_alloc("coupling::cell_sums::sorted", Kokkos::WithoutInitializing),
         view.entries.extent(0));
   }
+  share_ = view.share;
   Kokkos::deep_copy(Device(), cursor_, 0);
   Kokkos::parallel_for("coupling::cell_sums::count_per_cell", DeviceRange(0, footprint.entry_count()),
                        CountPerCell{view, cursor_});

@@ -75,6 +75,23 @@ class MomentumExchange {
   const BoundReport& bound_report() const { return bound_report_; }
   /// Per particle, in the particles' present order: the gas sampled at the last compute_coefficients.
   const DeviceArray<SampledGas>& sampled_gas() const { return sampled_; }
+  /// Which transfer cells each particle covers, as of the last deposit; where other folders sum over the same
+  /// cells, the order that the sums were done in.
+  const Footprint& transfer_footprint() const { return transfer_footprint_; }
+  const CellSums& cell_sums() const { return sums_; }
+  /// Gas velocity of the gas grid's cells as sampled last [m/s].
+  const DeviceArray<Vec3>& gas_velocity() const { return gas_velocity_; }
+  /// The gas grid on the device.
+  const GridLocator& gas_locator() const {
+    return one_grid_ ? transfer_footprint_.grid() : gas_footprint_.grid();
+  }
+  /// What walls leave of the gas grid's cells; empty if they do not cut it.
+  const CutGrid& cut_grid() const { return cut_; }
+  /// Volume of the transfer cells that is open to the gas [m3].
+  const HostArray<Real>& open_volume() const { return volume_; }
+  /// From means over transfer cells to means over gas cells, and back; integrals are kept.
+  const GridMapping& to_gas() const { return to_gas_; }
+  const GridMapping& to_transfer() const { return to_transfer_; }
   const CartesianGrid& transfer_grid() const { return transfer_; }
   /// Void fraction of the transfer grid's cells.
   const HostArray<Real>& transfer_void_fraction() const { return void_fraction_host_; }

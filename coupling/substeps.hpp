@@ -7,7 +7,9 @@
 
 namespace pellicle::coupling {
 
-/// Advances all particles by `count` substeps under contacts, gravity and the force of the gas.
-void advance_particles(dem::Engine& particles, int count, const FluidForce& force, core::Timers& timers);
+/// Advances all particles by `count` substeps under contacts, gravity and the force of the gas; see
+/// dem::Engine::advance for the hook.
+void advance_particles(dem::Engine& particles, int count, const FluidForce& force, core::Timers& timers,
+                       const dem::SubstepHook& before_motion = {});
 
 }  // namespace pellicle::coupling

@@ -42,6 +42,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
     of_particles.at(static_cast<std::size_t>(material)) = true;
   require_pairs(setup_.materials, setup_.pairs, of_particles, of_walls);
   allocate(seeds.size());
+  for (Companion* companion : companions_) companion->reset(particles_.count);
   walls_.forget();
   search_.clear();
   tuner_ = SkinTuner(setup_.skin.smallest_fraction);
@@ -79,7 +80,9 @@ void Engine::tune_skin(bool outdated) {
   list_valid_ = false;
 }
 
-void Engine::advance(int count, core::Timers& timers) { advance(count, NoFluid{}, timers); }
+void Engine::advance(int count, core::Timers& timers, const SubstepHook& before_motion) {
+  advance(count, NoFluid{}, timers, before_motion);
+}
 
 void Engine::begin_substep(core::Timers& timers) {
   walls_.move_to(wall_time());
@@ -193,6 +196,7 @@ std::size_t Engine::bytes() const {
   total += walls_.bytes();
   for (const NeighbourSearch& search : search_) total += search.bytes();
   total += history_.bytes();
+  for (const Companion* companion : companions_) total += companion->bytes();
   return total;
 }
 

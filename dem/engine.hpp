@@ -9,6 +9,7 @@
 
 #include "core/checkpoint.hpp"
 #include "core/timers.hpp"
+#include "dem/companion.hpp"
 #include "dem/contact_history.hpp"
 #include "dem/contact_loop.hpp"
 #include "dem/materials.hpp"
@@ -83,10 +84,17 @@ struct ParticleTotals {
   Real largest_speed = 0;     ///< [m/s]
 };
 
+/// Called in every substep with its number, from 0, in this call of Engine::advance.
+using SubstepHook = std::function<void(int)>;
+
 class Engine {
  public:
   /// Throws std::invalid_argument where the set-up cannot work.
   explicit Engine(const EngineSetup& setup);
+
+  /// `companion` follows the particles from now on: every re-sort of memory, arrival and departure, and into checkpoints.
+  /// It must outlive the engine. To be called before there are particles.
+  void attach(Companion& companion) { companions_.push_back(&companion); }
 
   /// Replaces all particles; ids are 0, 1, … in the order given. Throws std::invalid_argument where contact properties
   /// of two materials that can meet are missing.
@@ -102,10 +110,13 @@ class Engine {
 
   /// Advances all particles by `count` substeps under contacts, gravity and the fluid force, a device functor
   /// `Vec3 operator()(Index p, const Vec3& velocity, Real dt) const` that is called once a particle and substep.
+  /// `before_motion`, if any, is called when the lists are valid and the particles have not moved yet.
   template <class FluidForce>
-  void advance(int count, const FluidForce& fluid_force, core::Timers& timers) {
+  void advance(int count, const FluidForce& fluid_force, core::Timers& timers,
+               const SubstepHook& before_motion = {}) {
     for (int k = 0; k < count; ++k) {
       begin_substep(timers);
+      if (before_motion) before_motion(k);
       {
         const core::Timers::Scope scope(timers, core::Part::motion);
         move_particles(particles_, result_, list_, step_, fluid_force, flags_);
@@ -116,7 +127,7 @@ class Engine {
   }
 
   /// The same without a fluid.
-  void advance(int count, core::Timers& timers);
+  void advance(int count, core::Timers& timers, const SubstepHook& before_motion = {});
 
   /// Walls move from the first substep on. `hold_walls` makes them rest in the place where they begin, until
   /// `start_walls` starts their clock.
@@ -136,6 +147,11 @@ class Engine {
 
   const Particles& particles() const { return particles_; }
   const EngineSetup& setup() const { return setup_; }
+  /// Cells of the last list build and the particles sorted into them: visit_runs around a place finds all particles that
+  /// may be near it now, as long as lists are valid (within before_motion). Null before there are particles.
+  const NeighbourSearch* search() const { return search_.empty() ? nullptr : &search_.front(); }
+  /// Where walls are in this substep, and what they are made of.
+  const WallSystem& walls() const { return walls_; }
   ParticleTotals compute_totals() const;
   std::int64_t left_through_open_sides() const { return left_; }
   /// The same for each side; a particle beyond two is counted for the first.
@@ -177,6 +193,7 @@ class Engine {
   [[noreturn]] void stop_for_overlap(Real overlap) const;
 
   EngineSetup setup_;
+  std::vector<Companion*> companions_;
   Particles particles_;
   WallSystem walls_;
   DeviceArray<PairParameters> table_;

@@ -37,6 +37,7 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/touching", host_copy(result_.touching, n));
   history_.save(file);
   walls_.save(file);
+  for (const Companion* companion : companions_) companion->save(file, n);
 }
 
 void Engine::load(core::CheckpointReader& file) {
@@ -67,7 +68,10 @@ void Engine::load(core::CheckpointReader& file) {
     search_.emplace_back(setup_.domain, skin(), smallest_radius_, largest_radius_);
     walls_.set_allowances(setup_.skin, setup_.time_step, smallest_radius_, largest_radius_);
   }
-  if (n == 0) return;
+  if (n == 0) {
+    for (Companion* companion : companions_) companion->reset(0);
+    return;
+  }
   const auto read = [&](const char* name, auto& array) {
     read_array(file, name, particles_.count, array, "dem::engine_checkpoint::loaded");
   };
@@ -79,6 +83,7 @@ void Engine::load(core::CheckpointReader& file) {
   read("dem/touching", result_.touching);
   history_.load(file);
   walls_.load(file);
+  for (Companion* companion : companions_) companion->load(file, particles_.count);
   canonicalise();
 }
 

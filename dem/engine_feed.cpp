@@ -92,6 +92,7 @@ void Engine::add_particles(const std::vector<ParticleSeed>& seeds) {
   put(particles_.angular_acceleration, first, std::vector<Vec3f>(seeds.size()));
   put(result_.touching, first, std::vector<std::int32_t>(seeds.size()));
   particles_.count = static_cast<Index>(total);
+  for (Companion* companion : companions_) companion->add(first, static_cast<Index>(seeds.size()));
   const ParticleTotals totals = compute_totals();
   moving_mass_ = totals.mass;
   moving_volume_ = totals.volume;

@@ -75,6 +75,8 @@ void Engine::allocate(std::size_t n) {
 }
 
 void Engine::reorder(const DeviceArray<std::int32_t>& order, Index count) {
+  // First, while the particles are still in the old order.
+  for (Companion* companion : companions_) companion->reorder(order, particles_.count, count, work_);
   permute_array(particles_.position_radius, order, count, work_);
   permute_motion(particles_.velocity_spin, order, count, work_);
   permute_array(particles_.mass, order, count, work_);

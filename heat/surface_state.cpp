@@ -1,0 +1,124 @@
+#include "heat/surface_state.hpp"
+
+#include <algorithm>
+
+namespace pellicle::heat {
+namespace {
+
+/// Particles whose amounts are summed in one go; fixed, so that sums do not depend on threads.
+constexpr Index sum_block = 512;
+
+struct SumSurface {
+  Index first, last;
+  DeviceArray<std::int32_t> order;  // empty: as they are
+  DeviceArray<Real> temperature, mass, heat_capacity;
+  DeviceArray<Film> film;
+  DeviceArray<dem::VelocitySpin> velocity_spin;
+  HeatCapacities capacities;
+  DeviceArray<SurfaceTotals> result;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index block) const {
+    const Index begin = first + block * sum_block;
+    const Index end = Kokkos::min(begin + sum_block, last);
+    SurfaceTotals sum;
+    for (Index k = begin; k < end; ++k) {
+      const Index p = order.extent(0) > 0 ? order(k) : k;
+      const Film f = film(p);
+      const Real capacity = mass(p) * heat_capacity(velocity_spin(p).material) +
+                            f.liquid * capacities.liquid + f.solids * capacities.solids;
+      sum += {f, capacity * (temperature(p) - capacities.reference_temperature)};
+    }
+    result(block) = sum;
+  }
+};
+
+}  // namespace
+
+SurfaceState::SurfaceState(const dem::Particles& particles, const std::vector<Real>& heat_capacity,
+                           const HeatCapacities& capacities, Real initial_temperature)
+    : particles_(particles),
+      heat_capacity_("heat::surface_state::heat_capacity", heat_capacity.size()),
+      capacities_(capacities),
+      temperature_("heat::surface_state::temperature", "heat/temperature", initial_temperature),
+      film_("heat::surface_state::film", "heat/film") {
+  const auto host = Kokkos::create_mirror_view(heat_capacity_);
+  std::copy(heat_capacity.begin(), heat_capacity.end(), host.data());
+  Kokkos::deep_copy(heat_capacity_, host);
+}
+
+void SurfaceState::set_by_id(const std::vector<Real>& temperature, const std::vector<Film>& film) {
+  const Index count = particles_.count;
+  const auto motion = dem::host_copy(particles_.velocity_spin, count);
+  const std::pair<Index, Index> range(0, count);
+  const auto device_temperature = Kokkos::subview(temperature_.values(), range);
+  const auto device_film = Kokkos::subview(film_.values(), range);
+  const auto host_temperature = Kokkos::create_mirror_view(device_temperature);
+  const auto host_film = Kokkos::create_mirror_view(device_film);
+  for (Index p = 0; p < count; ++p) {
+    const auto id = static_cast<std::size_t>(motion(p).id);
+    host_temperature(p) = temperature.at(id);
+    host_film(p) = film.at(id);
+  }
+  Kokkos::deep_copy(device_temperature, host_temperature);
+  Kokkos::deep_copy(device_film, host_film);
+}
+
+SurfaceTotals SurfaceState::sum(Index first, Index last, const DeviceArray<std::int32_t>& order) const {
+  SurfaceTotals total;
+  if (last <= first) return total;
+  const Index blocks = (last - first + sum_block - 1) / sum_block;
+  const DeviceArray<SurfaceTotals> result(
+      Kokkos::view_alloc("heat::surface_state::sums", Kokkos::WithoutInitializing),
+      static_cast<std::size_t>(blocks));
+  Kokkos::parallel_for("heat::surface_state::sum", DeviceRange(0, blocks),
+                       SumSurface{first, last, order, temperature(), particles_.mass, heat_capacity_, film(),
+                                  particles_.velocity_spin, capacities_, result});
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, result);
+  for (Index b = 0; b < blocks; ++b) total += host(b);
+  return total;
+}
+
+SurfaceTotals SurfaceState::compute_totals() const { return sum(0, particles_.count); }
+
+void SurfaceState::reset(Index count) {
+  temperature_.reset(count);
+  film_.reset(count);
+  left_ = entered_ = {};
+}
+
+void SurfaceState::add(Index first, Index count) {
+  temperature_.add(first, count);
+  film_.add(first, count);
+  entered_ += sum(first, first + count);
+}
+
+void SurfaceState::reorder(const DeviceArray<std::int32_t>& order, Index before, Index count,
+                           const DeviceArray<Real>& scratch) {
+  left_ += sum(count, before, order);
+  temperature_.reorder(order, before, count, scratch);
+  film_.reorder(order, before, count, scratch);
+}
+
+void SurfaceState::save(core::CheckpointWriter& file, Index count) const {
+  temperature_.save(file, count);
+  film_.save(file, count);
+  for (const auto& [name, totals] : {std::pair("left", left_), std::pair("entered", entered_)}) {
+    const std::string path = std::string("heat/") + name;
+    file.write(path + "_liquid", totals.film.liquid);
+    file.write(path + "_solids", totals.film.solids);
+    file.write(path + "_enthalpy", totals.enthalpy);
+  }
+}
+
+void SurfaceState::load(const core::CheckpointReader& file, Index count) {
+  temperature_.load(file, count);
+  film_.load(file, count);
+  for (const auto& [name, totals] : {std::pair("left", &left_), std::pair("entered", &entered_)}) {
+    const std::string path = std::string("heat/") + name;
+    totals->film.liquid = file.read_double(path + "_liquid");
+    totals->film.solids = file.read_double(path + "_solids");
+    totals->enthalpy = file.read_double(path + "_enthalpy");
+  }
+}
+
+}  // namespace pellicle::heat
