@@ -37,8 +37,7 @@ struct Buck {
 /// 25 degC, 2 % at 80 degC.
 struct ClausiusClapeyron {
   static constexpr core::ModelInfo info{
-      "clausius_clapeyron",
-      "with 2260 kJ/kg and 373 K at 101325 Pa, as the thesis: 18 % high at 25 degC",
+      "clausius_clapeyron", "with 2260 kJ/kg and 373 K at 101325 Pa, as the thesis: 18 % high at 25 degC",
       "Clausius-Clapeyron with constant latent heat"};
   static constexpr Real latent_heat = 2.26e6;   ///< [J/kg]
   static constexpr Real boiling_point = 373.0;  ///< at the standard atmosphere [K]

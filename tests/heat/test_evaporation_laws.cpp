@@ -62,9 +62,10 @@ TEST(ParticleResponse, IsTheMeanOfTheExactSolutionWhenWet) {
         EXPECT_NEAR(r.evaporation(gas_warmth, vapour), exact.evaporation, 1e-9 * std::abs(exact.evaporation))
             << step;
         // And heat less latent heat is what changes the temperature.
-        EXPECT_NEAR(particle.warmth + step / particle.capacity *
-                                          (r.heat(gas_warmth, vapour) - latent * r.evaporation(gas_warmth, vapour)),
-                    exact.warmth, 1e-8)
+        EXPECT_NEAR(
+            particle.warmth + step / particle.capacity *
+                                  (r.heat(gas_warmth, vapour) - latent * r.evaporation(gas_warmth, vapour)),
+            exact.warmth, 1e-8)
             << step;
       }
     }
@@ -94,8 +95,8 @@ TEST(ParticleResponse, NeverOvershootsTheEquilibrium) {
     const ValueAndSlope line = find_chord(buck, p, conductances, water, gas_warmth, vapour, step);
     const Real latent = water.evaporation(reference + p.warmth);
     const ParticleResponse r = wet_response(p, conductances, line, latent, step);
-    const Real end =
-        p.warmth + step / p.capacity * (r.heat(gas_warmth, vapour) - latent * r.evaporation(gas_warmth, vapour));
+    const Real end = p.warmth + step / p.capacity *
+                                    (r.heat(gas_warmth, vapour) - latent * r.evaporation(gas_warmth, vapour));
     // Bisection of H (T - y) = L G (w*(y) - w).
     Real low = -120, high = 120;
     for (int n = 0; n < 100; ++n) {
@@ -153,14 +154,16 @@ TEST(ParticleResponse, FallsToTheWetBulbTemperature) {
       const Real mu = cfd::sutherland_viscosity(film), rho = cfd::ideal_gas_density(atmosphere, film, 0);
       const Real k = 0.0263 * std::pow(film / 300, 0.8), diffusivity = 2.6e-5 * std::pow(film / 298.15, 1.81);
       const Real re = rho * speed * d / mu;
-      const Real nu = RanzMarshall{}({1, re, mu * 1007 / k}), sh = RanzMarshall{}({1, re, mu / (rho * diffusivity)});
+      const Real nu = RanzMarshall{}({1, re, mu * 1007 / k}),
+                 sh = RanzMarshall{}({1, re, mu / (rho * diffusivity)});
       Conductances c{nu * k * pi * d, rho * sh * diffusivity * pi * d};
       if (stefan) c.vapour *= stefan_factor(buck(reference + p.warmth).value, gas_vapour);
       const ValueAndSlope line = find_chord(buck, p, c, water, air - reference, gas_vapour, 1);
       const Real latent = water.evaporation(reference + p.warmth);
       const ParticleResponse r = wet_response(p, c, line, latent, 1);
-      p.warmth += (r.heat(air - reference, gas_vapour) - latent * r.evaporation(air - reference, gas_vapour)) /
-                  p.capacity;
+      p.warmth +=
+          (r.heat(air - reference, gas_vapour) - latent * r.evaporation(air - reference, gas_vapour)) /
+          p.capacity;
     }
     return reference + p.warmth - 273.15;
   };

@@ -40,8 +40,9 @@ TEST(SaturationLaws, ClausiusClapeyronIsTheThesiss) {
   for (const Row& row : rows) {
     EXPECT_NEAR(ClausiusClapeyron{}(row.temperature).value / row.thesis_pressure, 1, 1e-7)
         << row.temperature << " K";
-    EXPECT_NEAR(saturated_fraction(ClausiusClapeyron{}, row.temperature, pressure).value / row.thesis_fraction,
-                1, 1e-4)
+    EXPECT_NEAR(
+        saturated_fraction(ClausiusClapeyron{}, row.temperature, pressure).value / row.thesis_fraction, 1,
+        1e-4)
         << row.temperature << " K";
   }
 }

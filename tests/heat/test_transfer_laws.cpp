@@ -46,13 +46,11 @@ int law_named(const char* name) { return core::find_model(core::model_list<Trans
 TEST(TransferLaws, GunnAgreesWithPublishedForm) {
   for (const GunnRow& row : gunn_rows) {
     const std::string at = std::to_string(row.void_fraction) + ", Re " + std::to_string(row.reynolds);
-    EXPECT_NEAR(
-        transfer_number(law_named("gunn"), {row.void_fraction, row.reynolds, 0.71}) / row.nusselt, 1,
-        printed)
+    EXPECT_NEAR(transfer_number(law_named("gunn"), {row.void_fraction, row.reynolds, 0.71}) / row.nusselt, 1,
+                printed)
         << at;
-    EXPECT_NEAR(
-        transfer_number(law_named("gunn"), {row.void_fraction, row.reynolds, 0.6}) / row.sherwood, 1,
-        printed)
+    EXPECT_NEAR(transfer_number(law_named("gunn"), {row.void_fraction, row.reynolds, 0.6}) / row.sherwood, 1,
+                printed)
         << at;
   }
 }
