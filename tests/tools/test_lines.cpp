@@ -98,7 +98,7 @@ TEST(Lines, ParticleMeanIsOverAllSamples) {
   for (int step = 1; step <= 3; ++step) {
     // Different numbers of particles, so that a mean of frame means would differ.
     const auto made_up = spread(500 * step, step);
-    const auto particles = tests::make_particles(made_up);
+    const ParticleColumns particles = tests::make_particles(made_up);
     lines.sample(step, &particles, nullptr);
     for (const auto& p : made_up) {
       if (p.position.z < 0.045 || p.position.z >= 0.055) continue;
@@ -128,7 +128,7 @@ TEST(Lines, OnlyInsideTheWindow) {
   LineSpec spec = line_along_x();
   spec.average = {0.3, 0.6};
   Lines lines({spec}, time, nullptr);
-  const auto particles = tests::make_particles({{{0.015, 0, 0.05}, {0, 0, 2}, 0}});
+  const ParticleColumns particles = tests::make_particles({{{0.015, 0, 0.05}, {0, 0, 2}, 0}});
   for (int step = 0; step <= 10; ++step) lines.sample(step, &particles, nullptr);
   const auto table = result(lines, folder, "middle");
   EXPECT_EQ(table.columns[3][1], 3);  // steps 4, 5 and 6
@@ -141,7 +141,7 @@ TEST(Lines, OnlyInsideTheWindow) {
 // The same sums to the last bit, whatever the number of threads: the sum over a bin runs in memory order.
 TEST(Lines, SumsAreInMemoryOrder) {
   const auto made_up = spread(20000);
-  const auto particles = tests::make_particles(made_up);
+  const ParticleColumns particles = tests::make_particles(made_up);
   const LineGeometry geometry = make_line_geometry(line_along_x());
   ParticleLine line(geometry, core::find_model(particle_quantities, "particle_velocity_z"));
   line.add(particles);
@@ -217,7 +217,7 @@ TEST(Lines, RestartGoesOnWithTheAverage) {
   LineSpec spec = line_along_x();
   Lines whole({spec}, time, nullptr), first({spec}, time, nullptr);
   for (int step = 1; step <= 10; ++step) {
-    const auto particles = tests::make_particles(spread(1000, step));
+    const ParticleColumns particles = tests::make_particles(spread(1000, step));
     whole.sample(step, &particles, nullptr);
     if (step <= 4) first.sample(step, &particles, nullptr);
   }
@@ -227,7 +227,7 @@ TEST(Lines, RestartGoesOnWithTheAverage) {
   Lines second({spec}, longer, nullptr);  // a later end keeps the average
   second.load(core::CheckpointReader(folder / "c.h5"));
   for (int step = 5; step <= 10; ++step) {
-    const auto particles = tests::make_particles(spread(1000, step));
+    const ParticleColumns particles = tests::make_particles(spread(1000, step));
     second.sample(step, &particles, nullptr);
   }
   EXPECT_EQ(result(second, folder, "middle").columns, result(whole, folder, "middle").columns);

@@ -81,7 +81,7 @@ TEST(Probes, ParticleIsFoundWhereverItIs) {
   Probes probes({spec}, time, results, box, nullptr, std::nullopt);
   std::vector<MadeUpParticle> made_up;
   for (int id = 0; id < 10; ++id) made_up.push_back({{0.1 * id, 0, 0}, {}, id});
-  auto particles = tests::make_particles(made_up);
+  ParticleColumns particles = tests::make_particles(made_up);
   probes.sample({.step = 1, .time = 0.1, .particles = &particles});
   std::swap(made_up[7], made_up[2]);  // re-sorted in memory
   made_up[2].position.x = 0.75;
@@ -112,7 +112,7 @@ TEST(Probes, BedByHand) {
     made_up.push_back(
         {{0, 0, -0.5 + 0.001 * (id + 1)}, {3, 0, id == 5 ? 4.0 : 0.0}, id, 1e-3, id < 100 ? 1.0 : 3.0});
   }
-  const auto particles = tests::make_particles(made_up);
+  const ParticleColumns particles = tests::make_particles(made_up);
   probes.sample(
       {.step = 1, .time = 0.1, .particles = &particles, .gas = &gas.fields, .contacts = {5.5, 0.01}});
   probes.flush();
@@ -163,7 +163,7 @@ TEST(Histograms, CountsByHand) {
   by_mass.min = by_mass.max = std::nullopt;
   by_mass.every = 0;  // at the end alone
   Histograms histograms({spec, by_mass}, time, results, std::nullopt);
-  const auto particles = tests::make_particles({{{}, {1, 0, 0}, 0, 1e-3, 2.0},
+  const ParticleColumns particles = tests::make_particles({{{}, {1, 0, 0}, 0, 1e-3, 2.0},
                                                 {{}, {0, 3, 0}, 1, 1e-3, 1.0},
                                                 {{}, {0, 0, -3.5}, 2, 1e-3, 1.0},
                                                 {{}, {0, 0, 5}, 3, 1e-3, 4.0}});

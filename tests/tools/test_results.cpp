@@ -139,7 +139,7 @@ TEST(Outputs, ResumedRunWritesTheSameFiles) {
     Outputs outputs(spec, results, time, nullptr, resume);
     if (resume) outputs.load(core::CheckpointReader(results.checkpoint()));
     for (int step = from; step <= to; ++step) {
-      const auto particles = state_at(step);
+      const ParticleColumns particles = state_at(step);
       outputs.sample({.step = step, .time = time.time_of(step), .particles = &particles}, step == 10);
       if (step != 5 && step != 10) continue;
       outputs.flush();

@@ -7,16 +7,13 @@ namespace {
 /// At most one particle has the id, so that at most one thread writes.
 struct FindId {
   Index id;
-  DeviceArray<const dem::PositionRadius> position_radius;
-  DeviceArray<const dem::VelocitySpin> velocity_spin;
-  DeviceArray<const Real> mass;
-  DeviceArray<const dem::Vec3f> acceleration;
+  ParticleColumns particles;
   DeviceArray<ParticleSample> found;
   DeviceArray<Index> count;
 
   KOKKOS_INLINE_FUNCTION void operator()(Index p) const {
-    if (velocity_spin(p).id != id) return;
-    found(0) = ParticleSample{position_radius(p), velocity_spin(p), mass(p), acceleration(p)};
+    if (particles.particles.velocity_spin(p).id != id) return;
+    found(0) = particles(p);
     count(0) = 1;
   }
 };
@@ -26,11 +23,10 @@ struct FindId {
 ParticleFinder::ParticleFinder()
     : found_("tools::find_particle::found", 1), count_("tools::find_particle::count", 1) {}
 
-bool ParticleFinder::find(const dem::Particles& particles, Index id, ParticleSample& sample) const {
+bool ParticleFinder::find(const ParticleColumns& particles, Index id, ParticleSample& sample) const {
   Kokkos::deep_copy(count_, 0);
-  Kokkos::parallel_for("tools::find_particle::find_id", DeviceRange(0, particles.count),
-                       FindId{id, particles.position_radius, particles.velocity_spin, particles.mass,
-                              particles.acceleration, found_, count_});
+  Kokkos::parallel_for("tools::find_particle::find_id", DeviceRange(0, particles.particles.count),
+                       FindId{id, particles, found_, count_});
   Index count = 0;
   Kokkos::deep_copy(count, Kokkos::subview(count_, 0));
   if (count == 0) return false;

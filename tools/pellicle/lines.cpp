@@ -40,7 +40,7 @@ Lines::Lines(const std::vector<LineSpec>& specs, core::TimeControl& time, const 
   }
 }
 
-void Lines::sample(std::int64_t step, const dem::Particles* particles, const GasFields* gas) {
+void Lines::sample(std::int64_t step, const ParticleColumns* particles, const GasFields* gas) {
   for (auto& line : lines_) {
     if (!line.window.contains(step)) continue;
     if (line.particles) {

@@ -29,7 +29,7 @@ class Lines {
   Lines(const std::vector<LineSpec>& specs, core::TimeControl& time, const CartesianGrid* gas_grid);
 
   /// Adds the samples of this step; either may be null.
-  void sample(std::int64_t step, const dem::Particles* particles, const GasFields* gas);
+  void sample(std::int64_t step, const ParticleColumns* particles, const GasFields* gas);
   /// Replaces lines/NAME.csv: position, value, standard deviation, samples. Bins without a sample have value nan.
   void write(const ResultsFolder& folder) const;
 

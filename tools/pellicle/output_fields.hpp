@@ -11,7 +11,7 @@
 namespace pellicle::tools {
 
 /// Fields of a particle snapshot (particles.h5); the position is always written.
-inline constexpr std::array<core::ModelInfo, 9> particle_snapshot_fields{{
+inline constexpr std::array<core::ModelInfo, 14> particle_snapshot_fields{{
     {"id", "number of the particle, the same through the run [-]"},
     {"velocity", "velocity of the centre, three components [m/s]"},
     {"spin", "angular velocity, three components [rad/s]"},
@@ -21,6 +21,11 @@ inline constexpr std::array<core::ModelInfo, 9> particle_snapshot_fields{{
     {"material", "number of the material, in the order of the case file [-]"},
     {"speed", "magnitude of the velocity [m/s]"},
     {"acceleration", "acceleration in the last substep, three components [m/s2]"},
+    {"temperature", "temperature; needs heat [K]"},
+    {"film_liquid", "liquid in the film; needs heat or spray [kg]"},
+    {"film_solids", "solids in the film: the coating; needs heat or spray [kg]"},
+    {"coating_thickness", "thickness of the dry coating; needs heat or spray [m]"},
+    {"hits", "spray parcels captured; needs spray [-]"},
 }};
 
 /// Fields of a gas snapshot (gas.h5), all at cell centres.
@@ -37,7 +42,7 @@ inline constexpr std::array<core::ModelInfo, 8> gas_snapshot_fields{{
 
 /// One number of one particle: what lines, histograms and particle probes can show. The position in this list is the
 /// code that the device functions take (ParticleQuantity in particle_quantities.hpp).
-inline constexpr std::array<core::ModelInfo, 14> particle_quantities{{
+inline constexpr std::array<core::ModelInfo, 21> particle_quantities{{
     {"particle_velocity_x", "x component of the particle velocity [m/s]"},
     {"particle_velocity_y", "y component of the particle velocity [m/s]"},
     {"particle_velocity_z", "z component of the particle velocity [m/s]"},
@@ -52,6 +57,13 @@ inline constexpr std::array<core::ModelInfo, 14> particle_quantities{{
     {"particle_mass", "mass of the particle [kg]"},
     {"particle_kinetic_energy", "kinetic energy of translation of the particle [J]"},
     {"particle_acceleration_z", "z component of the particle's acceleration in the last substep [m/s2]"},
+    {"particle_temperature", "temperature of the particle; needs heat [K]"},
+    {"film_liquid", "liquid in the film on the particle; needs heat or spray [kg]"},
+    {"film_solids", "solids in the film on the particle: its coating; needs heat or spray [kg]"},
+    {"coating_thickness", "thickness of the dry coating; needs heat or spray [m]"},
+    {"hits", "spray parcels that the particle has captured; needs spray [-]"},
+    {"first_hit_time", "when the particle captured its first parcel, -1 if never; needs spray [s]"},
+    {"last_hit_time", "when the particle captured its last parcel, -1 if never; needs spray [s]"},
 }};
 
 /// One number of one gas cell: what lines and point probes can show, in the order of GasQuantity.

@@ -21,10 +21,7 @@ struct FindBins {
 struct ListHits {
   int quantity;
   DeviceArray<const Index> bin_of;
-  DeviceArray<const dem::PositionRadius> position_radius;
-  DeviceArray<const dem::VelocitySpin> velocity_spin;
-  DeviceArray<const Real> mass;
-  DeviceArray<const dem::Vec3f> acceleration;
+  ParticleColumns particles;
   DeviceArray<Index> hit_bin;
   DeviceArray<Real> hit_value;
 
@@ -33,8 +30,7 @@ struct ListHits {
     if (bin < 0) return;
     if (final) {
       hit_bin(hits) = bin;
-      hit_value(hits) =
-          particle_quantity(quantity, position_radius(p), velocity_spin(p), mass(p), acceleration(p));
+      hit_value(hits) = particle_quantity(quantity, particles(p));
     }
     ++hits;
   }
@@ -84,7 +80,8 @@ ParticleLine::ParticleLine(const LineGeometry& line, int quantity)
       sum_("tools::particle_lines::sum", static_cast<std::size_t>(line.points)),
       square_("tools::particle_lines::square", static_cast<std::size_t>(line.points)) {}
 
-void ParticleLine::add(const dem::Particles& particles) {
+void ParticleLine::add(const ParticleColumns& columns) {
+  const dem::Particles& particles = columns.particles;
   if (particles.count == 0) return;
   if (hit_bin_.extent(0) < static_cast<std::size_t>(particles.count)) {
     // As long as all particles: whatever moves into the line, nothing is allocated in a later step.
@@ -99,9 +96,7 @@ void ParticleLine::add(const dem::Particles& particles) {
                        FindBins{line_, particles.position_radius, bin_of_});
   Index hits = 0;
   Kokkos::parallel_scan("tools::particle_lines::list_hits", all,
-                        ListHits{quantity_, bin_of_, particles.position_radius, particles.velocity_spin,
-                                 particles.mass, particles.acceleration, hit_bin_, hit_value_},
-                        hits);
+                        ListHits{quantity_, bin_of_, columns, hit_bin_, hit_value_}, hits);
   if (hits == 0) return;
   Kokkos::parallel_for("tools::particle_lines::add_hits", DeviceRange(0, line_.points),
                        AddHits{hits, hit_bin_, hit_value_, samples_, sum_, square_});

@@ -5,8 +5,8 @@
 
 #include "core/types.hpp"
 #include "core/views.hpp"
-#include "dem/particles.hpp"
 #include "tools/pellicle/line_geometry.hpp"
+#include "tools/pellicle/particle_columns.hpp"
 
 namespace pellicle::tools {
 
@@ -24,7 +24,7 @@ class ParticleLine {
   /// `quantity`: position in particle_quantities.
   ParticleLine(const LineGeometry& line, int quantity);
 
-  void add(const dem::Particles& particles);
+  void add(const ParticleColumns& particles);
 
   BinSums sums() const;
   void set_sums(const BinSums& sums);

@@ -19,7 +19,21 @@ std::vector<T> gather(const DeviceArray<T>& array, const std::vector<std::size_t
 
 }  // namespace
 
-HostParticles copy_to_host(const dem::Particles& particles) {
+ParticleSample HostParticles::sample(std::size_t p) const {
+  ParticleSample sample;
+  sample.position_radius = position_radius[p];
+  sample.velocity_spin = velocity_spin[p];
+  sample.mass = mass[p];
+  sample.acceleration = acceleration[p];
+  if (!temperature.empty()) sample.temperature = temperature[p];
+  if (!film.empty()) sample.film = film[p];
+  if (!hits.empty()) sample.hit = hits[p];
+  sample.solids_density = solids_density;
+  return sample;
+}
+
+HostParticles copy_to_host(const ParticleColumns& columns) {
+  const dem::Particles& particles = columns.particles;
   std::vector<std::size_t> order(static_cast<std::size_t>(particles.count));
   std::iota(order.begin(), order.end(), std::size_t{0});
   HostParticles host;
@@ -34,6 +48,10 @@ HostParticles copy_to_host(const dem::Particles& particles) {
   if (particles.acceleration.extent(0) >= order.size())
     host.acceleration = gather(particles.acceleration, order);
   host.acceleration.resize(order.size());
+  if (columns.temperature.extent(0) > 0) host.temperature = gather(columns.temperature, order);
+  if (columns.film.extent(0) > 0) host.film = gather(columns.film, order);
+  if (columns.hits.extent(0) > 0) host.hits = gather(columns.hits, order);
+  host.solids_density = columns.solids_density;
   return host;
 }
 

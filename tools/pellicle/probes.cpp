@@ -127,9 +127,7 @@ void Probes::append(Probe& probe, const OutputState& state) {
     const bool found =
         state.particles != nullptr && finder_.find(*state.particles, *probe.spec.particle, particle);
     for (const int quantity : probe.quantities) {
-      row.push_back(found ? particle_quantity(quantity, particle.position_radius, particle.velocity_spin,
-                                              particle.mass, particle.acceleration)
-                          : std::nan(""));
+      row.push_back(found ? particle_quantity(quantity, particle) : std::nan(""));
     }
   } else if (probe.spec.wall) {
     const WallFigures& now = find_wall(state, *probe.spec.wall);
@@ -220,8 +218,7 @@ void Histograms::sample(const OutputState& state, bool last) {
     if (particles.count() == 0) continue;
     std::vector<Real> values(particles.count());
     for (std::size_t p = 0; p < values.size(); ++p) {
-      values[p] = particle_quantity(histogram.quantity, particles.position_radius[p],
-                                    particles.velocity_spin[p], particles.mass[p], particles.acceleration[p]);
+      values[p] = particle_quantity(histogram.quantity, particles.sample(p));
     }
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     const Real from = spec.min.value_or(*least);

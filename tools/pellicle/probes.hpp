@@ -23,9 +23,9 @@ namespace pellicle::tools {
 /// and only if an output of that step asks for them.
 struct OutputState {
   std::int64_t step = 0;
-  Real time = 0;                              ///< [s]
-  const dem::Particles* particles = nullptr;  ///< null without particles
-  const GasFields* gas = nullptr;             ///< null without gas
+  Real time = 0;                               ///< [s]
+  const ParticleColumns* particles = nullptr;  ///< null without particles
+  const GasFields* gas = nullptr;              ///< null without gas
   ContactFigures contacts{};
   const std::vector<WallFigures>* walls = nullptr;  ///< null without particles
   const SideFigures* sides = nullptr;               ///< null without particles

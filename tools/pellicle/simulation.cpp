@@ -388,7 +388,11 @@ void Simulation::write_outputs(bool last) {
   state.time = time_.time();
   state.contacts = {contacts_per_particle(), summary_.largest_overlap_ratio};
   GasFields fields;
-  if (particles_) state.particles = &particles_->particles();
+  ParticleColumns columns;
+  if (particles_) {
+    columns = particle_columns();
+    state.particles = &columns;
+  }
   if (particles_) state.walls = &walls_;
   if (particles_) state.sides = &particles_->left_by_side();
   if (gas_) {
@@ -410,6 +414,8 @@ void Simulation::write_outputs(bool last) {
   }
   outputs_->sample(state, last);
 }
+
+ParticleColumns Simulation::particle_columns() const { return particles_->particles(); }
 
 void Simulation::write_checkpoint() {
   const core::Timers::Scope scope(timers_, Part::output);

@@ -68,6 +68,7 @@ class Simulation {
   void update_ledger();
   void write_outputs(bool last = false);
   Real contacts_per_particle() const;
+  ParticleColumns particle_columns() const;
   void write_checkpoint();
   void report_numerics() const;
   void write_summary(const std::string& status, const std::string& message = {});

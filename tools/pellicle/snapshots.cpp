@@ -105,6 +105,19 @@ void write_particle_field(core::Hdf5File& file, const std::string& group, const 
     put([&](std::size_t p) { return norm(motions[p].velocity()); });
   } else if (field == "acceleration") {
     put([&](std::size_t p) { return convert<Real>(particles.acceleration[p]); });
+  } else if (field == "temperature") {
+    put([&](std::size_t p) { return particles.sample(p).temperature; });
+  } else if (field == "film_liquid") {
+    put([&](std::size_t p) { return particles.sample(p).film.liquid; });
+  } else if (field == "film_solids") {
+    put([&](std::size_t p) { return particles.sample(p).film.solids; });
+  } else if (field == "coating_thickness") {
+    put([&](std::size_t p) {
+      return heat::coating_thickness(places[p].radius, particles.sample(p).film.solids,
+                                     particles.solids_density);
+    });
+  } else if (field == "hits") {
+    put([&](std::size_t p) { return static_cast<std::int32_t>(particles.sample(p).hit.hits); });
   } else {
     throw std::logic_error("no particle field " + field);
   }
