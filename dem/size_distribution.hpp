@@ -72,6 +72,13 @@ class SizeSampler {
   /// Mean over particles of the volume of a sphere [m³].
   Real mean_volume() const;
 
+  /// The classes, for those who draw otherwise: their edges, or the diameters of a discrete table [m]; the cumulative
+  /// share by number at the upper edge of each (at each diameter); and what is constant within a class.
+  const std::vector<Real>& edges() const { return edges_; }
+  const std::vector<Real>& cumulative() const { return cumulative_; }
+  bool is_discrete() const { return discrete_; }
+  ShareOf constant_within_classes() const { return constant_; }
+
  private:
   void make_classes(std::vector<Real> edges, const std::vector<Real>& finer, ShareOf by);
 

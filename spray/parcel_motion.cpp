@@ -1,0 +1,245 @@
+#include "spray/parcel_motion.hpp"
+
+#include "core/random.hpp"
+
+namespace pellicle::spray {
+namespace {
+
+/// A bouncing droplet is left so far from the particle, as a share of the sum of radii, that rounding does not put it
+/// inside.
+constexpr Real lift_off = 1e-6;
+
+/// What of a path matters to a search.
+struct Path {
+  Vec3 start;   ///< [m]
+  Vec3 way;     ///< [m]
+  Real radius;  ///< of the droplet [m]
+  Real late;    ///< after the beginning of the move, when it starts [s]
+  Real dt;      ///< over which it goes [s]
+};
+
+struct Touch {
+  Real share = never;
+  std::int32_t id = 0;
+  Index particle = -1;
+};
+
+template <bool Repeats>
+struct MoveParcel {
+  ParcelMove m;
+
+  KOKKOS_INLINE_FUNCTION void operator()(const Index i) const {
+    const ParcelEnd before = m.parcels.end(i);
+    if (before.fate != ParcelFate::flying || before.time >= m.end) return;
+    ParcelState parcel = m.parcels.state(i);
+    const NozzleView& nozzle = m.nozzle(m.parcels.name(i).nozzle);
+    const Real start = Kokkos::max(before.time, m.begin);
+    const Real dt = m.end - start;
+
+    Vec3 gas_velocity{0, 0, 0};
+    if (m.gas.drag.viscosity > 0) gas_velocity = m.gas.velocity(m.gas.cell_of(parcel.position));
+    const Real rate = relaxation_rate(m.gas.drag, nozzle.density, parcel.diameter,
+                                      Kokkos::sqrt(norm_squared(gas_velocity - parcel.velocity)));
+    const DropletStep step = move_droplet(parcel.velocity, gas_velocity, rate, m.gravity, dt);
+    const Path path{parcel.position, step.path, 0.5 * parcel.diameter, start - m.begin, dt};
+
+    const Touch touch = find_touch(path);
+    const Real wall = first_wall(path.start, path.way);
+    const Real side = leaves_at(path);
+    parcel.velocity = step.velocity;
+    // At the same moment a particle is met before a wall, and a wall before the side that it may be.
+    ParcelEnd after;
+    Real share = 1;
+    if (touch.share <= 1 && touch.share <= wall && touch.share <= side) {
+      share = touch.share;
+      if (wall_between(touch, path)) {
+        after.fate = ParcelFate::wall_loss;
+      } else if (stays(touch, path, parcel, nozzle, i)) {
+        after.fate = ParcelFate::captured;
+        after.particle = touch.particle;
+      } else {
+        bounce(touch, path, parcel, after);
+        if (after.fate == ParcelFate::flying) {
+          m.parcels.state(i) = parcel;
+          return;
+        }
+      }
+    } else if (wall <= 1 && wall <= side * (1 + 1e-9) + 1e-12) {
+      share = wall;
+      after.fate = ParcelFate::wall_loss;
+    } else if (side <= 1) {
+      share = side;
+      after.fate = ParcelFate::overspray;
+    }
+    parcel.position = wrapped(parcel.position + share * path.way);
+    m.parcels.state(i) = parcel;
+    if (after.fate == ParcelFate::flying) return;
+    after.time = start + share * dt;
+    m.parcels.end(i) = after;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION Vec3 velocity_of(Index p) const {
+    const dem::VelocitySpin& motion = m.targets.particles.velocity_spin(p);
+    return motion.inverse_mass != 0 ? motion.velocity() : Vec3{0, 0, 0};
+  }
+
+  /// The first particle that the path touches, of several at the same moment that with the lowest id.
+  KOKKOS_INLINE_FUNCTION Touch find_touch(const Path& path) const {
+    const ParcelTargets& targets = m.targets;
+    Touch first;
+    if (targets.particles.count == 0) return first;
+    const Vec3 middle = path.start + 0.5 * path.way;
+    const Real reach = 0.5 * Kokkos::sqrt(norm_squared(path.way)) + path.radius +
+                       (path.late + path.dt) * targets.largest_speed;
+    dem::visit_runs<Repeats>(
+        targets.cells, targets.cell_start, dem::PositionRadius{middle.x, middle.y, middle.z, reach},
+        [&](std::int32_t begin, std::int32_t end) {
+          for (std::int32_t slot = begin; slot < end; ++slot) {
+            const Index p = targets.order(slot);
+            const dem::PositionRadius place = targets.particles.position_radius(p);
+            Vec3 apart = middle - place.position();
+            if (Repeats) apart = m.domain.shortest(apart);
+            const Real near = reach + place.radius;
+            if (norm_squared(apart) > near * near) continue;
+            // As the particle sees it: it was where it is when the move began, and goes on meanwhile.
+            const Vec3 velocity = velocity_of(p);
+            const Vec3 start = apart - 0.5 * path.way - path.late * velocity;
+            const Real share = first_touch(start, path.way - path.dt * velocity, place.radius + path.radius);
+            if (share > 1 || share > first.share) continue;
+            const std::int32_t id = targets.particles.velocity_spin(p).id;
+            if (share < first.share || id < first.id) first = Touch{share, id, p};
+          }
+        });
+    return first;
+  }
+
+  /// Beyond a periodic side a path goes on at the other.
+  KOKKOS_INLINE_FUNCTION Real first_wall(const Vec3& start, const Vec3& way) const {
+    const Vec3 end = start + way;
+    Real first = first_wall_crossing(m.walls, start, end);
+    if (!Repeats) return first;
+    const Vec3 inside = wrapped(end);
+    if (inside == end) return first;
+    return Kokkos::min(first, first_wall_crossing(m.walls, start + (inside - end), inside));
+  }
+
+  KOKKOS_INLINE_FUNCTION Vec3 wrapped(Vec3 place) const {
+    if (!Repeats) return place;
+    const Vec3 length = m.domain.length();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (m.domain.periodic[axis] == 0) continue;
+      if (place[axis] < m.domain.box.min[axis]) place[axis] += length[axis];
+      if (place[axis] >= m.domain.box.max[axis]) place[axis] -= length[axis];
+    }
+    return place;
+  }
+
+  /// Share of the path at which it leaves the domain, or `never`.
+  KOKKOS_INLINE_FUNCTION Real leaves_at(const Path& path) const {
+    Real first = never;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (m.domain.periodic[axis] != 0) continue;
+      const Real end = path.start[axis] + path.way[axis];
+      const Real low = m.domain.box.min[axis];
+      const Real high = m.domain.box.max[axis];
+      if (end >= low && end <= high) continue;
+      const Real way = path.way[axis];
+      const Real share = way != 0 ? ((end < low ? low : high) - path.start[axis]) / way : Real(0);
+      first = Kokkos::min(first, Kokkos::max(share, Real(0)));
+    }
+    return first;
+  }
+
+  /// Vector [m] from the particle's centre to the droplet's at the moment of touch.
+  KOKKOS_INLINE_FUNCTION Vec3 from_centre(const Touch& touch, const Path& path) const {
+    const Vec3 centre = m.targets.particles.position_radius(touch.particle).position();
+    const Vec3 apart = path.start + touch.share * path.way - centre -
+                       (path.late + touch.share * path.dt) * velocity_of(touch.particle);
+    return Repeats ? m.domain.shortest(apart) : apart;
+  }
+
+  /// Whether a wall stands between a droplet and the particle that it touches: soft particles reach a little through thin
+  /// walls, and so do droplets that come close to them. Such a droplet touches the wall.
+  KOKKOS_INLINE_FUNCTION bool wall_between(const Touch& touch, const Path& path) const {
+    return first_wall(path.start + touch.share * path.way, -from_centre(touch, path)) <= 1;
+  }
+
+  /// Whether a droplet that touches a particle stays there.
+  KOKKOS_INLINE_FUNCTION bool stays(const Touch& touch, const Path& path, const ParcelState& parcel,
+                                    const NozzleView& nozzle, Index i) const {
+    if (nozzle.efficiency.points == 0) return true;
+    const Vec3 apart = from_centre(touch, path);
+    const Real distance = Kokkos::sqrt(norm_squared(apart));
+    const Real normal_speed =
+        distance > 0 ? -dot(parcel.velocity - velocity_of(touch.particle), apart) / distance : Real(0);
+    const Real weber =
+        weber_number(nozzle.density, normal_speed, parcel.diameter, nozzle.efficiency.surface_tension);
+    const ParcelName name = m.parcels.name(i);
+    const Real draw = core::random_uniform(m.seed, core::Purpose::capture, name.number, name.nozzle,
+                                           static_cast<std::uint32_t>(m.substep % (std::int64_t{1} << 16)));
+    return draw < nozzle.efficiency(weber);
+  }
+
+  /// Throws the droplet back from the particle like a mirror, and leaves it on the particle's surface for the rest of the
+  /// move, unless a wall is in between.
+  KOKKOS_INLINE_FUNCTION void bounce(const Touch& touch, const Path& path, ParcelState& parcel,
+                                     ParcelEnd& after) const {
+    const Vec3 apart = from_centre(touch, path);
+    const Real distance = Kokkos::sqrt(norm_squared(apart));
+    const Vec3 normal = distance > 0 ? (1 / distance) * apart : Vec3{0, 0, 1};
+    const Vec3 velocity = velocity_of(touch.particle);
+    const Real approach = dot(parcel.velocity - velocity, normal);
+    if (approach < 0) parcel.velocity -= (2 * approach) * normal;
+    const Real sum = m.targets.particles.position_radius(touch.particle).radius + path.radius;
+    const Vec3 centre = path.start + touch.share * path.way - apart;  // of the particle, then
+    const Vec3 end = centre + ((1 - touch.share) * path.dt) * velocity + ((1 + lift_off) * sum) * normal;
+    const Real wall = first_wall(path.start, end - path.start);
+    const Real side = leaves_at({path.start, end - path.start, path.radius, path.late, path.dt});
+    if (wall <= 1) after.fate = ParcelFate::wall_loss;
+    if (side <= 1 && side < wall) after.fate = ParcelFate::overspray;
+    parcel.position = wrapped(end);
+  }
+};
+
+}  // namespace
+
+void move_parcels(const ParcelMove& move) {
+  // Parcels near particles cost more than others: threads take them as they come.
+  const Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>> range(0, move.parcels.count,
+                                                                             Kokkos::ChunkSize(64));
+  if (move.domain.repeats()) {
+    Kokkos::parallel_for("spray::parcel_motion::move_periodic", range, MoveParcel<true>{move});
+  } else {
+    Kokkos::parallel_for("spray::parcel_motion::move", range, MoveParcel<false>{move});
+  }
+}
+
+ParticleBounds find_bounds(const dem::Particles& particles) {
+  if (particles.count == 0) return {};
+  const auto motion = particles.velocity_spin;
+  const auto place = particles.position_radius;
+  Real largest = 0;
+  Real smallest = 0;
+  Kokkos::parallel_reduce(
+      "spray::parcel_motion::find_bounds", DeviceRange(0, particles.count),
+      KOKKOS_LAMBDA(const Index p, Real& most, Real& least) {
+        const dem::VelocitySpin& v = motion(p);
+        if (v.inverse_mass != 0) most = Kokkos::max(most, v.vx * v.vx + v.vy * v.vy + v.vz * v.vz);
+        least = Kokkos::min(least, place(p).radius);
+      },
+      Kokkos::Max<Real>(largest), Kokkos::Min<Real>(smallest));
+  return {largest > 0 ? Kokkos::sqrt(largest) : 0, smallest};
+}
+
+Real largest_parcel_speed(const Parcels& parcels) {
+  const auto state = parcels.state;
+  Real largest = 0;
+  Kokkos::parallel_reduce(
+      "spray::parcel_motion::largest_parcel_speed", DeviceRange(0, parcels.count),
+      KOKKOS_LAMBDA(const Index i, Real& most) { most = Kokkos::max(most, norm_squared(state(i).velocity)); },
+      Kokkos::Max<Real>(largest));
+  return largest > 0 ? Kokkos::sqrt(largest) : 0;
+}
+
+}  // namespace pellicle::spray

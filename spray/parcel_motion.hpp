@@ -1,0 +1,68 @@
+// One move of all parcels: through the gas, until a particle, a wall or an open side ends it.
+#pragma once
+
+#include <cstdint>
+
+#include "coupling/cut_grid.hpp"
+#include "coupling/grid_locator.hpp"
+#include "dem/cell_grid.hpp"
+#include "dem/particles.hpp"
+#include "spray/injector.hpp"
+#include "spray/parcel_motion_laws.hpp"
+#include "spray/parcels.hpp"
+#include "spray/wall_crossing.hpp"
+
+namespace pellicle::spray {
+
+/// The gas that parcels fly through; without gas `drag` has no viscosity and the arrays are empty.
+struct ParcelGas {
+  DragGas drag;
+  coupling::GridLocator grid;
+  coupling::CutGrid cut;       ///< empty where walls do not cut the grid
+  DeviceArray<Vec3> velocity;  ///< of its cells [m/s]
+
+  /// Cell whose gas a droplet at this place [m] is in: on its own side of thin walls, and with gas.
+  KOKKOS_INLINE_FUNCTION Index cell_of(const Vec3& place) const {
+    const Index cell = grid.index(grid.x.locate(grid.x.wrap(place.x)), grid.y.locate(grid.y.wrap(place.y)),
+                                  grid.z.locate(grid.z.wrap(place.z)));
+    return cut.is_cut() ? cut.home(cell, place) : cell;
+  }
+};
+
+/// The particles that parcels may hit, and how to find those near a place.
+struct ParcelTargets {
+  dem::Particles particles;
+  dem::CellGrid cells;                   ///< of the last list build
+  DeviceArray<std::int32_t> cell_start;  ///< slots at which its cells begin
+  DeviceArray<std::int32_t> order;       ///< the particle in a slot
+  Real largest_speed = 0;                ///< that particles hardly exceed [m/s]; it widens the search
+};
+
+/// Everything about one move, a functor over parcels. Times are in s since the beginning of the outer step.
+struct ParcelMove {
+  Parcels parcels;
+  DeviceArray<NozzleView> nozzle;
+  ParcelGas gas;
+  ParcelTargets targets;
+  MovingWalls walls;
+  dem::Domain domain;
+  Vec3 gravity;  ///< [m/s2]
+  Real begin = 0, end = 0;
+  std::uint64_t seed = 0;
+  std::int64_t substep = 0;  ///< of the run: what the random numbers of captures are drawn for
+};
+
+/// Moves all parcels that fly and are born before the end of the move.
+void move_parcels(const ParcelMove& move);
+
+/// What of the particles bounds a move.
+struct ParticleBounds {
+  Real largest_speed = 0;    ///< of those that move [m/s]
+  Real smallest_radius = 0;  ///< [m]; 0 without particles
+};
+ParticleBounds find_bounds(const dem::Particles& particles);
+
+/// Largest speed [m/s] of a parcel; 0 if there is none.
+Real largest_parcel_speed(const Parcels& parcels);
+
+}  // namespace pellicle::spray

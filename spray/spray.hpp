@@ -1,0 +1,100 @@
+// The spray of a case: nozzles, parcels on their way, and what has become of those that are not.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/checkpoint.hpp"
+#include "core/ledger.hpp"
+#include "core/types.hpp"
+#include "dem/companion.hpp"
+#include "dem/engine.hpp"
+#include "heat/surface_state.hpp"
+#include "spray/hits.hpp"
+#include "spray/injector.hpp"
+#include "spray/parcel_motion.hpp"
+#include "spray/parcels.hpp"
+
+namespace pellicle::spray {
+
+struct SprayOptions {
+  std::vector<Nozzle> nozzles;
+  Vec3 gravity{};  ///< [m/s2]
+  Real parcel_step =
+      0;  ///< how often parcels move [s]; 0: as seldom as their path stays below a particle's radius
+  std::uint64_t seed = 1;
+};
+
+/// What has become of the droplets of a nozzle, in kg of liquid and solids together; injected is the sum of the others.
+struct NozzleFigures {
+  std::string name;
+  Real injected = 0, captured = 0, wall_loss = 0, overspray = 0;
+  Real in_flight = 0;  ///< summed over the parcels there are
+  Real solids_fraction = 0;
+  std::int64_t parcels = 0;  ///< injected
+};
+
+/// Heat that captured droplets brought since the start [J].
+struct SprayHeat {
+  Real enthalpy = 0;   ///< above the reference temperature
+  Real free_heat = 0;  ///< of this, what nothing gave: droplets take the gas's temperature for nothing
+};
+
+/// An outer step is inject, move in its substeps (dem::SubstepHook), collect.
+class Spray {
+ public:
+  /// Throws std::invalid_argument for sizes of droplets that make no sense. `walls` are those of the engine.
+  Spray(const SprayOptions& options, const std::vector<dem::Wall>& walls);
+
+  /// What the particles remember of their hits: to be attached to the engine.
+  dem::FollowingArray<HitRecord>& hit_records() { return records_; }
+  const DeviceArray<HitRecord>& hit_record() const { return records_.values(); }
+
+  /// Before the substeps of an outer step that begins at `time` [s]: adds the parcels that leave the nozzles in it.
+  void inject(Real time, int substeps, const dem::Engine& engine);
+
+  /// In substep k, before the particles move: moves the parcels, if it is their turn, until the next time it is.
+  void move(int k, const dem::Engine& engine, const ParcelGas& gas);
+
+  /// After the substeps: hands what was captured to the particles and forgets parcels that fly no more. `gas_temperature`
+  /// of the gas grid's cells [K] is empty without heat: no temperature then changes.
+  void collect(const dem::Particles& particles, const heat::SurfaceState& surface, const ParcelGas& gas,
+               const DeviceArray<Real>& gas_temperature);
+
+  std::vector<NozzleFigures> figures() const;
+  SprayHeat heat() const { return {enthalpy_.value(), free_heat_.value()}; }
+  const Parcels& parcels() const { return parcels_; }
+  /// Substeps between two moves, in the present outer step.
+  int stride() const { return stride_; }
+  std::size_t bytes() const;
+
+  void save(core::CheckpointWriter& file) const;
+  void load(const core::CheckpointReader& file);
+
+ private:
+  int choose_stride(const ParticleBounds& bounds, Real substep) const;
+  MovingWalls walls_during(const dem::Engine& engine, int substeps) const;
+
+  SprayOptions options_;
+  std::vector<Injector> injectors_;
+  DeviceArray<NozzleView> nozzle_;
+  DeviceArray<Real> nozzle_temperature_;
+  Parcels parcels_, aside_;
+  HitList hits_;
+  DeviceArray<HitHeat> heat_scratch_;
+  dem::FollowingArray<HitRecord> records_;
+  DeviceArray<std::int64_t> ended_;  // parcels by nozzle and fate, since the start
+  bool walls_move_ = false;
+  DeviceArray<dem::WallPose> pose_at_end_;
+
+  // Of the present outer step.
+  Real time_ = 0;
+  int substeps_ = 0;
+  int stride_ = 1;
+  Real largest_speed_ = 0;
+
+  core::ExactSum enthalpy_, free_heat_;
+};
+
+}  // namespace pellicle::spray
