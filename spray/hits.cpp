@@ -76,7 +76,7 @@ struct AddHits {
     for (Index k = i; k < count && hits(k).id == first.id; ++k) {
       const Hit hit = hits(k);
       film += hit.film;
-      record.hits += 1;
+      ++record.hits;
       // Those of one outer step are sorted by parcel, not by time.
       if (record.first_hit < 0 || hit.time < record.first_hit) record.first_hit = hit.time;
       record.last_hit = Kokkos::max(record.last_hit, hit.time);

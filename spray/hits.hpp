@@ -8,7 +8,7 @@
 #include "core/views.hpp"
 #include "dem/particles.hpp"
 #include "heat/surface_state.hpp"
-#include "spray/hit_records.hpp"
+#include "spray/hit_record.hpp"
 
 namespace pellicle::spray {
 

@@ -110,7 +110,7 @@ struct SumMass {
 
 Spray::Spray(const SprayOptions& options, const std::vector<dem::Wall>& walls)
     : options_(options),
-      records_("spray::hit_records::record", "spray/hit_record"),
+      records_("spray::spray::hit_record", "spray/hit_record"),
       ended_("spray::spray::ended", options.nozzles.size() * fate_count),
       pose_at_end_("spray::spray::pose_at_end", walls.size()) {
   std::vector<NozzleView> views;

@@ -211,9 +211,10 @@ TEST(Spray, NothingIsCapturedThroughTheWallOfADraftTube) {
     std::vector<dem::ParticleSeed> beads;
     for (int n = 0; n < 60; ++n) {
       const Real angle = 2 * M_PI * (n + 0.5) / 15;  // at the middle of facets and elsewhere
+      const int row = n / 15;
       const Real out = tube + 0.9 * radius;
       beads.push_back(fixed_bead(
-          {0.01 + out * std::cos(angle), 0.01 + out * std::sin(angle), 0.008 + 0.003 * (n / 15)}, radius));
+          {0.01 + out * std::cos(angle), 0.01 + out * std::sin(angle), 0.008 + 0.003 * row}, radius));
     }
     beads.push_back(fixed_bead({0.012, 0.01, 0.014}, radius));
     Nozzle nozzle = needle({0.01, 0.01, 0.012}, {0, 0, 1}, 50);
