@@ -289,31 +289,39 @@ class Cutter {
     return std::min({grid_.width(0, at.x), grid_.width(1, at.y), grid_.width(2, at.z)});
   }
 
-  // Faces between two cells whose centres the gas reaches, but not from one to the other.
+  // Faces between two cells whose centres the gas reaches, but not from one to the other. One after the other: each adds
+  // to the list of pieces.
   void close_thin_surfaces() {
     for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      for_faces("cfd::cut_cells::thin", stencil_, axis, [&](Index f, Index m, Index p, Index, Index) {
-        const Index3 at = grid_.coordinates(m);
-        const Index3 beyond = grid_.coordinates(p);
-        Place from{}, to{};
-        for (std::size_t d = 0; d < 3; ++d) {
-          from[d] = entry(2 * at[static_cast<int>(d)] + 1);
-          to[d] = entry(2 * beyond[static_cast<int>(d)] + 1);
-        }
-        Place face = to;
-        --face[a];
-        const SurfaceLattice::Crossing* near = lattice_.crossing(axis, number(from));
-        const SurfaceLattice::Crossing* far = lattice_.crossing(axis, number(face));
-        if ((near == nullptr && far == nullptr) || !wet(from) || !wet(to)) return;
-        auto& share = result_.open_share[a][static_cast<std::size_t>(f)];
-        if (share == 0) return;
-        share = 0;
-        add_thin_piece(axis, m, at, near, far, 1, p);
-        add_thin_piece(axis, p, beyond, near, far, -1, m);
-      });
+      for (Index p = 0; p < stencil_.cells(); ++p) close_thin_surface(axis, p);
       copy_first_shares(axis);
     }
+  }
+
+  // The face on the minus side of cell p, if it has a cell on both sides.
+  void close_thin_surface(int axis, Index p) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Index3 beyond = grid_.coordinates(p);
+    if (beyond[axis] == 0 && !stencil_.periodic[a]) return;
+    Index3 at = beyond;
+    at[axis] = (beyond[axis] == 0 ? stencil_.n[axis] : beyond[axis]) - 1;
+    Place from{}, to{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      from[d] = entry(2 * at[static_cast<int>(d)] + 1);
+      to[d] = entry(2 * beyond[static_cast<int>(d)] + 1);
+    }
+    Place face = to;
+    --face[a];
+    const SurfaceLattice::Crossing* near = lattice_.crossing(axis, number(from));
+    const SurfaceLattice::Crossing* far = lattice_.crossing(axis, number(face));
+    if ((near == nullptr && far == nullptr) || !wet(from) || !wet(to)) return;
+    const Index f = stencil_.face(axis, beyond.x, beyond.y, beyond.z);
+    auto& share = result_.open_share[a][static_cast<std::size_t>(f)];
+    if (share == 0) return;
+    share = 0;
+    const Index m = stencil_.cell(at.x, at.y, at.z);
+    add_thin_piece(axis, m, at, near, far, 1, p);
+    add_thin_piece(axis, p, beyond, near, far, -1, m);
   }
 
   // The side of a thin surface that a cell sees: towards +axis (sense 1) or -axis.
