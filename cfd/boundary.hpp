@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cfd/scalar_options.hpp"
+#include "cfd/turbulence_options.hpp"
 #include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
@@ -59,6 +60,7 @@ struct BoundaryPatch {
   std::array<ScalarBoundary, scalar_count>
       scalars{};                     ///< what scalars meet here; of use where they are solved
   std::optional<DiscRegion> disc{};  ///< the part of the side inside this disc, in place of a box
+  InletTurbulence turbulence{};      ///< of an inlet; of use with a model of turbulence
 };
 
 }  // namespace pellicle::cfd

@@ -49,6 +49,7 @@ void GasSolver::save(core::CheckpointWriter& writer) const {
   writer.write("gas/balance/mass_out", out);
   for_totals(s.balance, [&](const char* name, const Vec3& total) { writer.write(name, total); });
   s.scalars.save(writer, s.fields);
+  if (s.turbulence) s.turbulence->save(writer);
 }
 
 void GasSolver::load(core::CheckpointReader& reader) {
@@ -66,6 +67,7 @@ void GasSolver::load(core::CheckpointReader& reader) {
   for (Index c = 0; c < n; ++c) {
     for (int a = 0; a < 3; ++a) s.fields.velocity(c + a * n) = s.state.velocity(c)[a];
   }
+  if (s.turbulence) s.turbulence->load(reader, s.fields);
   s.update_mass_flux();
   s.copy_velocity_to_state();
   const std::vector<Real> in = reader.read_doubles("gas/balance/mass_in");

@@ -9,8 +9,15 @@
 
 namespace pellicle::cfd {
 
+/// What wall functions say of the gas between a wall and the cell beside it.
+struct WallLayer {
+  Real viscosity = 0;  ///< shear stress = viscosity slip / distance [Pa s]
+  Real scale = 0;      ///< velocity scale [m/s]; 0: no wall that the gas sticks to
+  Real distance = 0;   ///< from the wall that the wall functions count with [m]
+};
+
 struct GasFields {
-  explicit GasFields(const FlowGeometry& geometry, std::size_t piece_count);
+  GasFields(const FlowGeometry& geometry, std::size_t piece_count, bool is_turbulent = false);
 
   Index cells = 0;
   HostArray<Real> velocity, velocity_old;  ///< 3 cells [m/s]
@@ -21,7 +28,13 @@ struct GasFields {
   HostArray<Real> mass_source;           ///< [kg/m3/s]
   HostArray<Real> density, density_old;  ///< [kg/m3]
   HostArray<Real> excess_density;  ///< that gravity acts on: over the one of the hydrostatic pressure [kg/m3]
-  HostArray<Real> viscosity;       ///< [Pa s]
+  HostArray<Real> viscosity;       ///< of gas and eddies together [Pa s]
+  HostArray<Real> molecular_viscosity;  ///< [Pa s]; the same array without a model of turbulence
+  // With a model of turbulence, else empty.
+  HostArray<Real> eddy_viscosity;     ///< [Pa s]
+  HostArray<Real> velocity_gradient;  ///< d u_b / d x_a in cell c: entry c + (3 a + b) cells [1/s]
+  std::vector<WallLayer> piece_layer,
+      surface_layer;                         ///< of boundary pieces, of pieces of the geometry's surfaces
   FaceField face_density, face_density_old;  ///< of faces with two cells; 0 on boundary faces [kg/m3]
   std::vector<Real> piece_density;           ///< of what flows through each boundary piece [kg/m3]
   FaceField superficial, superficial_old;    ///< face velocity [m/s]

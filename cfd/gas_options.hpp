@@ -7,6 +7,7 @@
 
 #include "cfd/gas_property_laws.hpp"
 #include "cfd/scalar_options.hpp"
+#include "cfd/turbulence_options.hpp"
 #include "core/model_list.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
@@ -75,6 +76,7 @@ struct GasOptions {
   Vec3 body_force;  ///< on the gas, besides gravity, per volume of gas [N/m3]
   Convection convection = Convection::ultimate_quickest;
   GasSolverOptions solver;
+  std::optional<KEpsilonOptions> turbulence;  ///< none: laminar, or eddies that the grid resolves
   std::array<std::optional<ScalarOptions>, scalar_count> scalars{};  ///< those that are solved, see Scalar
 };
 

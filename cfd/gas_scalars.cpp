@@ -19,7 +19,12 @@ GasScalars::GasScalars(const FlowGeometry& geometry, const Boundaries& boundarie
     std::vector<ScalarBoundary> conditions;
     conditions.reserve(patches.size());
     for (const BoundaryPatch& patch : patches) conditions.push_back(patch.scalars[i]);
-    transport_[i].emplace(std::string(scalar_names[i]), geometry, boundaries, conditions, *options.scalars[i],
+    ScalarOptions own = *options.scalars[i];
+    if (options.turbulence) {
+      const bool heat = i == index_of(Scalar::temperature);
+      own.turbulent_number = heat ? options.turbulence->prandtl_number : options.turbulence->schmidt_number;
+    }
+    transport_[i].emplace(std::string(scalar_names[i]), geometry, boundaries, conditions, own,
                           options.convection);
   }
   auto& moisture = transport_[index_of(Scalar::moisture)];
@@ -115,9 +120,9 @@ void GasScalars::compute_viscosity_and_buoyancy(const GasFields& fields) const {
   if (options_.viscosity_law == ViscosityLaw::sutherland) {
     const Real* temperature = heat->value().data();
     for_entries("cfd::gas_scalars::viscosity", fields.cells,
-                [&](Index c) { fields.viscosity(c) = sutherland_viscosity(temperature[c]); });
+                [&](Index c) { fields.molecular_viscosity(c) = sutherland_viscosity(temperature[c]); });
   } else {
-    Kokkos::deep_copy(fields.viscosity, options_.viscosity);
+    Kokkos::deep_copy(fields.molecular_viscosity, options_.viscosity);
   }
   if (has_varying_density()) {
     for_entries("cfd::gas_scalars::weight", fields.cells,

@@ -45,13 +45,14 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
       options(gas_options),
       patches(std::move(boundary_patches)),
       boundaries(cut_boundaries(geometry, patches)),
-      fields(geometry, boundaries.pieces.size()),
+      fields(geometry, boundaries.pieces.size(), options.turbulence.has_value()),
       momentum(geometry, boundaries, options),
       faces(geometry, boundaries, options),
       pressure_matrix(geometry.stencil),
       pressure_solver(geometry, options.solver.pressure_solver),
       scalars(geometry, boundaries, patches, options) {
   check_options(options);
+  if (options.turbulence) turbulence.emplace(geometry, boundaries, patches, options);
   const Index n = fields.cells;
   pressure_matrix.singular = !boundaries.has_outlet;
   influx = make_array("cfd::gas_solver::influx", 3 * n);
@@ -74,6 +75,11 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
   for (const Scalar scalar : {Scalar::temperature, Scalar::moisture}) {
     if (scalars[scalar]) state.scalars[index_of(scalar)] = scalars[scalar]->value();
   }
+  if (turbulence) {
+    state.turbulent_kinetic_energy = turbulence->k();
+    state.turbulent_dissipation = turbulence->epsilon();
+    state.eddy_viscosity = fields.eddy_viscosity;
+  }
 }
 
 void GasSolver::Impl::initialise(const HostArray<Real>& given_void_fraction) {
@@ -87,6 +93,7 @@ void GasSolver::Impl::initialise(const HostArray<Real>& given_void_fraction) {
   }
   Kokkos::deep_copy(fields.void_fraction_old, void_fraction);
   scalars.initialise(fields);
+  if (turbulence) turbulence->initialise(fields);
   Kokkos::deep_copy(fields.pressure, 0.0);
   Kokkos::deep_copy(state.pressure_gradient, Vec3{});
   for (int axis = 0; axis < 3; ++axis) {
@@ -147,6 +154,7 @@ void GasSolver::Impl::take_exchange(const ParticleExchange& exchange, Real dt) {
     for (int a = 0; a < 3; ++a) fields.force(c + a * n) = force[a];
   }
   scalars.prepare(fields);
+  if (turbulence) turbulence->prepare(fields);
   for_entries("cfd::gas_solver::buoyancy", n, [&](Index c) {
     if (!(geometry.volume(c) > 0)) return;  // keeps its force, of 0
     const Real weight = fields.void_fraction(c) * fields.excess_density(c);
@@ -415,6 +423,11 @@ void GasSolver::Impl::finish_step(Real dt, const ParticleExchange& exchange, Ste
   const ScalarReport scalar = scalars.update(fields, dt, exchange.scalars);
   report.scalar_iterations = scalar.iterations;
   report.scalar_cells_returned = scalar.returned;
+  if (turbulence) {
+    const ScalarReport eddies = turbulence->update(fields, dt);
+    report.scalar_iterations += eddies.iterations;
+    report.scalar_cells_returned += eddies.returned;
+  }
   state.time += dt;
 }
 

@@ -1,6 +1,7 @@
 // Inside of GasSolver; only its own files include this.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "cfd/gas_solver.hpp"
 #include "cfd/momentum.hpp"
 #include "cfd/pressure_system.hpp"
+#include "cfd/turbulence.hpp"
 
 namespace pellicle::cfd {
 
@@ -53,6 +55,7 @@ struct GasSolver::Impl {
   GasState state;
   GasBalance balance;
   GasScalars scalars;
+  std::optional<KEpsilon> turbulence;
 
   HostArray<Real> influx, inertia, relaxation, cell_force, rhs, correction;
   FaceField before;  ///< face velocities at the start of an outer iteration

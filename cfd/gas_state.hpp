@@ -29,6 +29,10 @@ struct GasState {
   FaceField superficial_velocity;  ///< volume_flux per area, over the open part of the face [m/s]
   std::array<HostArray<Real>, scalar_count> scalars{};  ///< [K], [kg/kg]; empty where not solved
   HostArray<Real> density;                              ///< at the end of the last step [kg/m3]
+  // With a model of turbulence, else empty.
+  HostArray<Real> turbulent_kinetic_energy{};  ///< k [m2/s2]
+  HostArray<Real> turbulent_dissipation{};     ///< epsilon [m2/s3]
+  HostArray<Real> eddy_viscosity{};            ///< [Pa s]
 };
 
 /// What the particles do to the gas during the coming step, per gas cell.

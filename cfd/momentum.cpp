@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "cfd/velocity_gradient.hpp"
+
 namespace pellicle::cfd {
 
 namespace {
@@ -14,7 +16,7 @@ HostArray<Real> make_array(const std::string& label, Index size) {
 
 }  // namespace
 
-GasFields::GasFields(const FlowGeometry& geometry, std::size_t piece_count)
+GasFields::GasFields(const FlowGeometry& geometry, std::size_t piece_count, bool is_turbulent)
     : cells(geometry.stencil.cells()) {
   velocity = make_array("cfd::gas_fields::velocity", 3 * cells);
   velocity_old = make_array("cfd::gas_fields::velocity_old", 3 * cells);
@@ -28,6 +30,14 @@ GasFields::GasFields(const FlowGeometry& geometry, std::size_t piece_count)
   density_old = make_array("cfd::gas_fields::density_old", cells);
   excess_density = make_array("cfd::gas_fields::excess_density", cells);
   viscosity = make_array("cfd::gas_fields::viscosity", cells);
+  molecular_viscosity = viscosity;
+  if (is_turbulent) {
+    molecular_viscosity = make_array("cfd::gas_fields::molecular_viscosity", cells);
+    eddy_viscosity = make_array("cfd::gas_fields::eddy_viscosity", cells);
+    velocity_gradient = make_array("cfd::gas_fields::velocity_gradient", 9 * cells);
+    piece_layer.resize(piece_count);
+    surface_layer.resize(geometry.pieces.size());
+  }
   face_density = make_face_field(geometry.stencil, "cfd::gas_fields::face_density");
   face_density_old = make_face_field(geometry.stencil, "cfd::gas_fields::face_density_old");
   piece_density.assign(piece_count, 0);
@@ -48,6 +58,7 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
       tangential_conductance_(make_face_field(geometry.stencil, "cfd::momentum::tangential_conductance")),
       linear_solver_(3 * geometry.stencil.cells()) {
   wall_stress_.assign(boundaries.pieces.size(), 0);
+  transposed_.assign(boundaries.pieces.size(), Vec3{});
   piece_of_.assign(geometry.is_cut ? static_cast<std::size_t>(geometry.stencil.cells()) : 0, -1);
   for (const SurfacePiece& piece : geometry.pieces) {
     const ImmersedSurface& surface = geometry.surfaces[static_cast<std::size_t>(piece.surface)];
@@ -96,7 +107,7 @@ void MomentumEquation::prepare(const GasFields& fields, Real dt) {
     const Real thinning = fields.density_old(c) / fields.density(c);
     const Real growth = (fields.void_fraction(c) - thinning * fields.void_fraction_old(c)) / dt -
                         fields.mass_source(c) / fields.density(c);
-    wall_stress_[b] = -piece.outward * fields.viscosity(c) * piece.area * growth;
+    wall_stress_[b] = -piece.outward * fields.molecular_viscosity(c) * piece.area * growth;
   }
 }
 
@@ -193,7 +204,9 @@ PieceTerms piece_terms(const GasFields& fields, const BoundaryPiece& piece, std:
     terms.brought[piece.axis] = piece.outward * flow / (piece.area * eps);
   }
   if (piece.kind == PieceKind::inlet || piece.kind == PieceKind::no_slip) {
-    terms.shear = viscosity * eps * piece.area / piece.half_width;
+    const bool layered = !fields.piece_layer.empty() && fields.piece_layer[b].scale > 0;
+    terms.shear =
+        (layered ? fields.piece_layer[b].viscosity : viscosity) * eps * piece.area / piece.half_width;
   }
   if (piece.kind == PieceKind::slip) {
     terms.mirror = viscosity * eps * piece.area / (2 * piece.half_width);
@@ -224,21 +237,26 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
   }
   add_surfaces(fields);
   add_skew_stress(fields);
+  if (fields.velocity_gradient.extent(0) > 0) {
+    compute_velocity_gradient(geometry_, boundaries_, fields);
+    add_transposed_stress(geometry_, boundaries_, fields, tangential_conductance_, source_, transposed_);
+  }
 }
 
 // The gas sticks to a surface. All of the slip counts, not its tangential part alone: the normal part vanishes with the
 // square of the distance, as continuity wants it to, and the components stay apart from each other.
-Real MomentumEquation::surface_conductance(const GasFields& fields, const SurfacePiece& piece) const {
-  const bool sticks = geometry_.surfaces[static_cast<std::size_t>(piece.surface)].sticks;
-  return sticks
-             ? fields.viscosity(piece.cell) * fields.void_fraction(piece.cell) * piece.area / piece.distance
-             : 0;
+Real MomentumEquation::surface_conductance(const GasFields& fields, std::size_t b) const {
+  const SurfacePiece& piece = geometry_.pieces[b];
+  if (!geometry_.surfaces[static_cast<std::size_t>(piece.surface)].sticks) return 0;
+  const Real viscosity =
+      fields.surface_layer.empty() ? fields.viscosity(piece.cell) : fields.surface_layer[b].viscosity;
+  return viscosity * fields.void_fraction(piece.cell) * piece.area / piece.distance;
 }
 
 void MomentumEquation::add_surfaces(const GasFields& fields) {
   for (std::size_t b = 0; b < geometry_.pieces.size(); ++b) {
     const SurfacePiece& piece = geometry_.pieces[b];
-    const Real shear = surface_conductance(fields, piece);
+    const Real shear = surface_conductance(fields, b);
     for (int a = 0; a < 3; ++a) {
       const Index e = piece.cell + a * fields.cells;
       own_(e) += shear;
@@ -278,7 +296,7 @@ Vec3 MomentumEquation::surface_shear(const GasFields& fields, std::size_t b) con
   const Index n = fields.cells;
   const Vec3 gas{fields.velocity(piece.cell), fields.velocity(piece.cell + n),
                  fields.velocity(piece.cell + 2 * n)};
-  return surface_conductance(fields, piece) * (surface_velocity_[b] - gas);
+  return surface_conductance(fields, b) * (surface_velocity_[b] - gas);
 }
 
 Vec3 MomentumEquation::convected_inflow(const GasFields& fields, std::size_t b) const {
@@ -302,7 +320,7 @@ Vec3 MomentumEquation::shear_force(const GasFields& fields, std::size_t b) const
     result[a] = (a == piece.axis ? 2 * terms.mirror : terms.shear) * slip;
   }
   result[piece.axis] += wall_stress_[b];
-  return result;
+  return result + transposed_[b];
 }
 
 // result(entry, near sum) for every cell and component.

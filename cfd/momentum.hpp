@@ -41,7 +41,7 @@ class MomentumEquation {
   Vec3 surface_shear(const GasFields& fields, std::size_t b) const;
 
  private:
-  Real surface_conductance(const GasFields& fields, const SurfacePiece& piece) const;
+  Real surface_conductance(const GasFields& fields, std::size_t b) const;
   void add_surfaces(const GasFields& fields);
   void add_skew_stress(const GasFields& fields);
   void add_boundaries(const GasFields& fields);
@@ -57,6 +57,7 @@ class MomentumEquation {
   std::vector<std::int32_t> piece_of_;  ///< of each cell, its largest piece of a surface; -1: none
   std::vector<Vec3> surface_velocity_;  ///< of each piece of the geometry's surfaces [m/s]
   std::vector<Real> wall_stress_;       ///< of each boundary piece: normal force on the gas along +axis [N]
+  std::vector<Vec3> transposed_;  ///< likewise by the transposed gradient, with a model of turbulence [N]
   std::array<HostArray<Real>, 6> near_,
       normal_;  ///< x-, x+, y-, y+, z-, z+; for components across, along that axis
   HostArray<Real> own_, source_, inverse_;

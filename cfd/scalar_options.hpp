@@ -39,6 +39,8 @@ struct ScalarOptions {
   Real conductivity = 0;  ///< k [W/m/K]
   Real diffusivity =
       0;  ///< D of what diffuses relative to the gas: adds density D to the conductivity [m2/s]
+  Real turbulent_number = 1;  ///< Prandtl or Schmidt number of the eddies, where there is a model of them
+  bool viscous = false;       ///< the molecular viscosity adds to the conductivity: of k and epsilon
   Real initial = 0;
   Real reference = 0;      ///< amounts count from here, and the equation is solved for the difference
   Real tolerance = 1e-12;  ///< of the linear solves, relative

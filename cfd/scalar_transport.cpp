@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cfd/convection_schemes.hpp"
+#include "cfd/turbulence_laws.hpp"
 #include "core/error.hpp"
 
 namespace pellicle::cfd {
@@ -110,7 +111,33 @@ void ScalarTransport::initialise(const GasFields& fields, const ScalarTransport*
 }
 
 Real ScalarTransport::conductivity(const GasFields& fields, Index c) const {
-  return fields.void_fraction(c) * (options_.conductivity + fields.density(c) * options_.diffusivity);
+  Real conductivity = options_.conductivity + fields.density(c) * options_.diffusivity;
+  if (fields.eddy_viscosity.extent(0) > 0) {
+    if (options_.viscous) conductivity += fields.molecular_viscosity(c);
+    conductivity += options_.capacity * fields.eddy_viscosity(c) / options_.turbulent_number;
+  }
+  return fields.void_fraction(c) * conductivity;
+}
+
+// Of the gas between a boundary and the centre of its cell.
+Real ScalarTransport::half_conductance(const GasFields& fields, std::size_t b) const {
+  const BoundaryPiece& piece = boundaries_.pieces[b];
+  if (!fields.piece_layer.empty() && fields.piece_layer[b].scale > 0) {
+    return layer_coefficient(fields, piece.cell, fields.piece_layer[b]) * piece.area;
+  }
+  return conductivity(fields, piece.cell) * piece.area / piece.half_width;
+}
+
+// Flux per area and difference over the layer between a wall and the centre of the cell: wall functions for what is
+// carried.
+Real ScalarTransport::layer_coefficient(const GasFields& fields, Index c, const WallLayer& layer) const {
+  const Real own = options_.conductivity + fields.density(c) * options_.diffusivity;
+  if (!(own > 0)) return 0;
+  const Real mu = fields.molecular_viscosity(c);
+  const Real prandtl = mu * options_.capacity / own;
+  const Real y_star = fields.density(c) * layer.scale * layer.distance / mu;
+  const Real resistance = wall_temperature(y_star, prandtl, options_.turbulent_number);
+  return fields.void_fraction(c) * own * prandtl * y_star / (resistance * layer.distance);
 }
 
 // Half cells in series, as drag and pressure are at the faces: at a jump of eps the gas-poor side decides.
@@ -136,7 +163,7 @@ void ScalarTransport::prepare(const GasFields& fields) {
 ScalarTransport::PieceTerms ScalarTransport::piece_terms(const GasFields& fields, std::size_t b) const {
   const BoundaryPiece& piece = boundaries_.pieces[b];
   const ScalarBoundary& condition = piece_conditions_[b];
-  const Real half = conductivity(fields, piece.cell) * piece.area / piece.half_width;
+  const Real half = half_conductance(fields, b);
   PieceTerms terms;
   if (const auto* given = std::get_if<GivenValue>(&condition)) {
     terms.given = given->value - options_.reference;
@@ -163,7 +190,7 @@ void ScalarTransport::set_boundary_values(const GasFields& fields) {
     const Real share = piece.area / geometry_.area[static_cast<std::size_t>(piece.axis)](piece.face);
     // How far the face's value is from the cell's towards the given one.
     Real towards = terms.inflow > 0 ? 1 : 0;
-    const Real half = conductivity(fields, piece.cell) * piece.area / piece.half_width;
+    const Real half = half_conductance(fields, b);
     if (terms.conductance > 0) towards = terms.conductance / half;
     FaceOfBoundary& value = boundary_values_[side][static_cast<std::size_t>(piece.place)];
     value.fixed += share * towards * terms.given;

@@ -80,6 +80,8 @@ class ScalarTransport {
   void compute_content(const GasFields& fields, const ScalarTransport* vapour);
   void prepare_carrier(const GasFields& fields, const ScalarTransport* vapour);
   Real conductivity(const GasFields& fields, Index cell) const;
+  Real half_conductance(const GasFields& fields, std::size_t b) const;
+  Real layer_coefficient(const GasFields& fields, Index cell, const WallLayer& layer) const;
   void prepare(const GasFields& fields);
   void assemble(const GasFields& fields, Real dt, const ScalarSource& source);
   Real out_through(const PieceTerms& terms, std::size_t b) const;
