@@ -111,8 +111,7 @@ void KEpsilon::collect_walls() {
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
     if (piece.kind != PieceKind::no_slip) continue;
-    WallPiece wall{piece.cell,       b,  false,         piece.area, piece.half_width,
-                   piece.half_width, {}, piece.velocity};
+    WallPiece wall{piece.cell, b, false, piece.area, piece.half_width, piece.half_width, {}, piece.velocity};
     wall.normal[piece.axis] = -piece.outward;
     walls_.push_back(wall);
   }
@@ -123,8 +122,8 @@ void KEpsilon::collect_walls() {
     const Index3 at = geometry_.grid.coordinates(piece.cell);
     const Real half = 0.5 * std::min({geometry_.grid.width(0, at.x), geometry_.grid.width(1, at.y),
                                       geometry_.grid.width(2, at.z)});
-    walls_.push_back({piece.cell, b, true, piece.area, piece.distance, std::max(piece.distance, half), piece.normal,
-                      surface.velocity_at(piece.point, piece.normal)});
+    walls_.push_back({piece.cell, b, true, piece.area, piece.distance, std::max(piece.distance, half),
+                      piece.normal, surface.velocity_at(piece.point, piece.normal)});
   }
   std::stable_sort(walls_.begin(), walls_.end(),
                    [](const WallPiece& a, const WallPiece& b) { return a.cell < b.cell; });
@@ -167,10 +166,9 @@ void KEpsilon::compute_eddy_viscosity(const GasFields& fields) const {
   const Real* k = k_.value().data();
   const Real* epsilon = epsilon_.value().data();
   for_entries("cfd::turbulence::eddy_viscosity", fields.cells, [&](Index c) {
-    fields.eddy_viscosity(c) = geometry_.volume(c) > 0
-                                   ? eddy_viscosity(fields.density(c), k[c], epsilon[c],
-                                                    ratio * fields.molecular_viscosity(c))
-                                   : 0;
+    fields.eddy_viscosity(c) = geometry_.volume(c) > 0 ? eddy_viscosity(fields.density(c), k[c], epsilon[c],
+                                                                        ratio * fields.molecular_viscosity(c))
+                                                       : 0;
   });
 }
 

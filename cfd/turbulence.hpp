@@ -42,15 +42,15 @@ class KEpsilon {
   /// A piece of a wall that the gas sticks to, and the cell beside it.
   struct WallPiece {
     Index cell = 0;
-    std::size_t piece = 0;     ///< of the boundaries, or of the geometry's surfaces
+    std::size_t piece = 0;  ///< of the boundaries, or of the geometry's surfaces
     bool is_immersed = false;
-    Real area = 0;             ///< [m2]
-    Real distance = 0;         ///< from the wall to where the velocity is [m]
+    Real area = 0;      ///< [m2]
+    Real distance = 0;  ///< from the wall to where the velocity is [m]
     /// The same, but not less than half a cell: the gas of a small cut cell goes along with its neighbour, and the log law
     /// holds for that one's distance [m].
     Real log_distance = 0;
-    Vec3 normal;               ///< unit vector into the gas
-    Vec3 velocity;             ///< of the wall [m/s]
+    Vec3 normal;    ///< unit vector into the gas
+    Vec3 velocity;  ///< of the wall [m/s]
   };
 
   void collect_walls();
@@ -68,8 +68,8 @@ class KEpsilon {
   const GasOptions& options_;
   Real fastest_inlet_ = 0;  ///< [m/s]
   ScalarTransport k_, epsilon_;
-  std::vector<WallPiece> walls_;     ///< in the order of cells
-  HostArray<Real> production_;       ///< G [kg/m/s3]
+  std::vector<WallPiece> walls_;      ///< in the order of cells
+  HostArray<Real> production_;        ///< G [kg/m/s3]
   HostArray<Real> wall_dissipation_;  ///< of cells beside walls [m2/s3]; -1 elsewhere
   HostArray<Real> floored_;
   ScalarSource k_source_, epsilon_source_;

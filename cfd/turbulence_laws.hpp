@@ -35,9 +35,8 @@ inline constexpr Real viscous_sublayer = 11.2252;
 
 /// U* = rho u U / tau_wall at y* = rho u y / mu, with the velocity scale u.
 inline Real wall_velocity(Real y_star) {
-  return y_star < viscous_sublayer
-             ? y_star
-             : std::log(KEpsilonConstants::wall * y_star) / KEpsilonConstants::kappa;
+  return y_star < viscous_sublayer ? y_star
+                                   : std::log(KEpsilonConstants::wall * y_star) / KEpsilonConstants::kappa;
 }
 
 /// Resistance of the sublayer to heat over that to momentum (Jayatilleke 1969, as Launder & Spalding give it, eq. 4.8).
@@ -77,8 +76,7 @@ inline Real wall_dissipation(Real k, Real scale, Real distance, Real kinematic_v
 inline Real wall_production(Real shear_stress, Real density, Real scale, Real distance,
                             Real kinematic_viscosity) {
   const bool viscous = scale * distance < viscous_sublayer * kinematic_viscosity;
-  return viscous ? 0
-                 : shear_stress * shear_stress / (KEpsilonConstants::kappa * density * scale * distance);
+  return viscous ? 0 : shear_stress * shear_stress / (KEpsilonConstants::kappa * density * scale * distance);
 }
 
 /// k of an intensity (root mean square of one component over the velocity) [m2/s2].

@@ -38,6 +38,8 @@ inline constexpr Dimension force_per_volume{"a force per volume", "N/m3", "5 N/m
 inline constexpr Dimension temperature{"a temperature", "K", "80 degC"};
 inline constexpr Dimension heat_capacity{"a heat capacity", "J/kg/K", "1 kJ/kg/K"};
 inline constexpr Dimension heat_conductivity{"a heat conductivity", "W/m/K", "26 mW/m/K"};
+inline constexpr Dimension turbulent_energy{"a kinetic energy per mass", "m2/s2", "0.5 m2/s2"};
+inline constexpr Dimension turbulent_dissipation{"a dissipation rate per mass", "m2/s3", "10 m2/s3"};
 inline constexpr Dimension diffusivity{"a diffusivity", "m2/s", "26 mm2/s"};
 inline constexpr Dimension heat_transfer{"a heat transfer coefficient", "W/m2/K", "5 W/m2/K"};
 inline constexpr Dimension thermal_expansion{"a thermal expansion coefficient", "1/K", "3.4e-3 1/K"};

@@ -53,7 +53,8 @@ TEST(Turbulence, ShearTendsToItsRatioOfProduction) {
   constexpr Real width = 1000;
   constexpr Real shear = 1;
   GasOptions options = make_air();
-  options.turbulence = KEpsilonOptions{.initial_k = 1.0, .initial_epsilon = 1.0, .largest_viscosity_ratio = 1e12};
+  options.turbulence =
+      KEpsilonOptions{.initial_k = 1.0, .initial_epsilon = 1.0, .largest_viscosity_ratio = 1e12};
   const CartesianGrid grid(Box{{0, 0, 0}, {width, n * width, width}}, {1, n, 1}, {true, false, true});
   GasSolver gas(grid, options,
                 {{"low", Side::y_min, {}, NoSlip{{0, 0, 0}}, "case.yaml:1"},
@@ -111,7 +112,8 @@ TEST(Turbulence, FrictionOfAChannelIsThatOfDean) {
     const Real reynolds = 1.2 * channel.bulk_velocity * 2 * channel.half_height / 1.8e-5;
     const Real found = 2 * std::pow(friction_velocity / channel.bulk_velocity, 2);
     const Real dean = 0.073 * std::pow(reynolds, -0.25);
-    std::printf("Re_b %.4g: C_f %.5f, Dean %.5f (%+.1f %%)\n", reynolds, found, dean, 100 * (found / dean - 1));
+    std::printf("Re_b %.4g: C_f %.5f, Dean %.5f (%+.1f %%)\n", reynolds, found, dean,
+                100 * (found / dean - 1));
     // The model's own error, and Dean's beyond his data (Re_b up to 6e5, scatter 10 %); wall functions without walls (no log law) would be off by a factor.
     EXPECT_NEAR(found, dean, 0.1 * dean);
   }
@@ -128,8 +130,7 @@ TEST(Turbulence, LogLayerHasTheKOfBalancedProduction) {
   // Between the wall cell and a quarter of the half height: the log law with Launder & Spalding's constants.
   for (const std::size_t j : {0, 2, 5}) {
     const Real y = (static_cast<Real>(j) + 0.5) / 40 * channel.half_height;
-    const Real log_law =
-        friction_velocity / 0.4187 * std::log(9.793 * 1.2 * friction_velocity * y / 1.8e-5);
+    const Real log_law = friction_velocity / 0.4187 * std::log(9.793 * 1.2 * friction_velocity * y / 1.8e-5);
     std::printf("u %zu: %.4f of %.4f\n", j, channel.velocity[j], log_law);
     EXPECT_NEAR(channel.velocity[j], log_law, 0.05 * log_law);
   }
@@ -168,7 +169,6 @@ TEST(Turbulence, StaysPositiveOnARoughStart) {
     }
   }
 }
-
 
 // A channel between two planes that cut the cells aslant, driven along them: the same friction as along the grid.
 Real run_tilted_channel(Index cells, Real friction_velocity) {

@@ -115,6 +115,21 @@ gas:
     - {name: out, on: right, outlet: {temperature: 300, relative_humidity: 0.5}}
 )";
 
+/// Turbulent gas.
+inline constexpr const char* turbulent_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
+time: {end: 1, gas_step: 0.01}
+gas:
+  density: 1.2
+  viscosity: 1.8e-5
+  turbulence: k_epsilon
+  k_epsilon: {initial_k: "0.5 m2/s2", initial_epsilon: "10 m2/s3", prandtl_number: 0.85, schmidt_number: 0.8,
+              largest_viscosity_ratio: 1e4}
+  grid: {cells: [2, 3, 4]}
+  boundaries:
+    - {name: in, on: left, inlet: {velocity: 10, turbulence: {intensity: "10 %", length_scale: "1 cm"}}}
+    - {name: out, on: right, outlet: {}}
+)";
+
 /// A plane flow: cells from sizes and zones.
 inline constexpr const char* refined_case =
     R"(domain: {min: [0, 0, 0], max: ["100 mm", "5 mm", "200 mm"], periodic: [z]}

@@ -129,7 +129,7 @@ TEST(CaseFile, DefaultsFollowFromOtherKeys) {
 
 TEST(CaseFile, ResolvedFileGivesTheSameCase) {
   for (const char* text : {spouted_bed_case, channel_case, humid_case, rising_case, refined_case,
-                           chamber_case, powders_case, vessel_case, two_particles_case}) {
+                           chamber_case, powders_case, vessel_case, turbulent_case, two_particles_case}) {
     const CaseSpec spec = parse_case(text, "some_case.yaml");
     const std::string resolved = resolved_yaml(spec);
     const CaseSpec again = parse_case(resolved, "another_name.yaml");
@@ -178,6 +178,7 @@ TEST(CaseFile, TheTestsCoverEveryKey) {
   given.merge(std::map(parse_case(humid_case, "c.yaml").lines));
   given.merge(std::map(parse_case(rising_case, "c.yaml").lines));
   given.merge(std::map(parse_case(refined_case, "c.yaml").lines));
+  given.merge(std::map(parse_case(turbulent_case, "c.yaml").lines));
   given.merge(std::map(parse_case(chamber_case, "c.yaml").lines));
   given.merge(std::map(parse_case(powders_case, "c.yaml").lines));
   given.merge(std::map(parse_case(vessel_case, "c.yaml").lines));

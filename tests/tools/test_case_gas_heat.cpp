@@ -95,5 +95,35 @@ TEST(CaseGasHeat, ContradictionsAreRefused) {
   EXPECT_TRUE(says(channel("output.snapshots.gas=[vapour_mass_fraction]"), "needs moisture of the gas"));
 }
 
+TEST(CaseTurbulence, KeysAreTakenOver) {
+  const GasSpec gas = *parse_case(tests::turbulent_case, "c.yaml").gas;
+  ASSERT_TRUE(gas.options.turbulence.has_value());
+  EXPECT_EQ(gas.options.turbulence->initial_k, 0.5);
+  EXPECT_EQ(gas.options.turbulence->initial_epsilon, 10);
+  EXPECT_EQ(gas.options.turbulence->prandtl_number, 0.85);
+  EXPECT_EQ(gas.options.turbulence->schmidt_number, 0.8);
+  EXPECT_EQ(gas.options.turbulence->largest_viscosity_ratio, 1e4);
+  EXPECT_DOUBLE_EQ(gas.boundaries[0].turbulence.intensity, 0.1);
+  EXPECT_DOUBLE_EQ(*gas.boundaries[0].turbulence.length_scale, 0.01);
+  const GasSpec plain = *parse_case(tests::turbulent_case, "c.yaml", {"gas.k_epsilon="}).gas;
+  EXPECT_EQ(plain.options.turbulence->prandtl_number, 0.9);
+  EXPECT_FALSE(plain.options.turbulence->initial_k.has_value());
+  EXPECT_FALSE(parse_case(tests::channel_case, "c.yaml").gas->options.turbulence.has_value());
+}
+
+TEST(CaseTurbulence, ContradictionsAreRefused) {
+  const auto turbulent = [](const std::string& assignment) {
+    return errors(tests::turbulent_case, {assignment});
+  };
+  EXPECT_EQ(turbulent("gas.velocity=[1, 0, 0]"), "accepted");
+  EXPECT_TRUE(says(turbulent("gas.turbulence=none"), "gas.k_epsilon: of no use without the model"));
+  EXPECT_TRUE(says(turbulent("gas.turbulence=k_omega"), "none, k_epsilon"));
+  EXPECT_TRUE(says(errors(tests::turbulent_case, {"gas.turbulence=none", "gas.k_epsilon="}),
+                   "inlet.turbulence: there is no model of turbulence"));
+  EXPECT_TRUE(says(turbulent("gas.boundaries.in.inlet.turbulence.length_scale=0"), "greater than 0"));
+  EXPECT_TRUE(says(errors(tests::channel_case, {"output.snapshots.gas=[eddy_viscosity]"}),
+                   "eddy_viscosity needs a model of turbulence; gas.turbulence: k_epsilon"));
+}
+
 }  // namespace
 }  // namespace pellicle::tools

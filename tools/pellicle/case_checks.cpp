@@ -386,6 +386,10 @@ class Checker {
     if (moist && !spec_.gas->moisture) {
       wrong(where, key, fmt::format("{} needs moisture of the gas; gas.moisture, or another name", name));
     }
+    if (is_turbulent_quantity(name) && !spec_.gas->options.turbulence) {
+      wrong(where, key,
+            fmt::format("{} needs a model of turbulence; gas.turbulence: k_epsilon, or another name", name));
+    }
   }
 
   void check_line(const LineSpec& line) {

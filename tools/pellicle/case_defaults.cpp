@@ -10,6 +10,7 @@
 #include "tools/pellicle/case_checks.hpp"
 #include "tools/pellicle/case_file.hpp"
 #include "tools/pellicle/case_keys.hpp"
+#include "tools/pellicle/output_fields.hpp"
 
 namespace pellicle::tools {
 
@@ -95,7 +96,8 @@ std::vector<std::string> all_quantities(const CaseSpec& spec, const ProbeSpec& p
     const bool moist = quantity.name == "vapour_mass_fraction" || quantity.name == "relative_humidity";
     const bool there =
         (!warm || (spec.gas && spec.gas->heat)) && (!moist || (spec.gas && spec.gas->moisture));
-    if (there) names.emplace_back(quantity.name);
+    const bool eddies = !is_turbulent_quantity(quantity.name) || (spec.gas && spec.gas->options.turbulence);
+    if (there && eddies) names.emplace_back(quantity.name);
   }
   return names;
 }

@@ -30,6 +30,7 @@ struct BoundaryKinds {
   bool free_slip = false;
   bool symmetry = false;
   CarriedKeys carried;
+  std::optional<cfd::InletTurbulence> turbulence;
 };
 
 BoundaryKinds take_apart(const cfd::BoundaryPatch& patch) {
@@ -40,6 +41,7 @@ BoundaryKinds take_apart(const cfd::BoundaryPatch& patch) {
   kinds.free_slip = std::holds_alternative<cfd::FreeSlip>(patch.kind);
   kinds.symmetry = std::holds_alternative<cfd::Symmetry>(patch.kind);
   kinds.carried = take_carried_apart(patch.scalars);
+  kinds.turbulence = patch.turbulence;
   return kinds;
 }
 
@@ -50,6 +52,7 @@ void put_together(const BoundaryKinds& kinds, cfd::BoundaryPatch& patch) {
   if (kinds.free_slip) patch.kind = cfd::FreeSlip{};
   if (kinds.symmetry) patch.kind = cfd::Symmetry{};
   patch.scalars = put_carried_together(kinds.carried);
+  if (kinds.turbulence) patch.turbulence = *kinds.turbulence;
 }
 
 void describe_disc(Keys& keys, cfd::DiscRegion& disc) {
@@ -66,6 +69,21 @@ void check_inside(Keys& keys, const Vec3& point, const Box& box) {
         fmt::format("it is out of the domain; a point within [{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}] m",
                     box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
     return;
+  }
+}
+
+void describe_inlet_turbulence(Keys& keys, const GasSpec& gas, std::optional<cfd::InletTurbulence>& held) {
+  keys.section<cfd::InletTurbulence>(
+      {"turbulence", "of the gas that comes in; with a model of turbulence"}, held,
+      [](Keys& inner, cfd::InletTurbulence& turbulence) {
+        inner.real({"intensity", "root mean square of a velocity component over the inlet velocity"},
+                   {dimension::pure_number, range::non_negative}, turbulence.intensity);
+        inner.real({"length_scale", "of the eddies", Need::has_default,
+                    "0.07 diameters of a disc of the inlet's area"},
+                   {dimension::length, range::positive}, turbulence.length_scale);
+      });
+  if (keys.reading() && held && !gas.options.turbulence) {
+    keys.problem("turbulence", "there is no model of turbulence; gas.turbulence, or without this section");
   }
 }
 
@@ -106,6 +124,8 @@ void describe_boundary(Keys& keys, const GasSpec& gas, cfd::BoundaryPatch& patch
                                inner.problem("share", "there is no flow rate to share; only with flow_rate");
                              }
                              describe_incoming_gas(inner, gas, true, kinds.carried);
+                             if (!inner.reading() && !gas.options.turbulence) kinds.turbulence.reset();
+                             describe_inlet_turbulence(inner, gas, kinds.turbulence);
                            });
   keys.section<cfd::Outlet>({"outlet", "gas leaves"}, kinds.outlet, [&](Keys& inner, cfd::Outlet& outlet) {
     inner.real({"pressure", "at the outlet, without its hydrostatic part"}, {dimension::pressure},
@@ -124,6 +144,36 @@ void describe_boundary(Keys& keys, const GasSpec& gas, cfd::BoundaryPatch& patch
   if (keys.reading() && kinds.wall && kinds.wall->velocity[cfd::axis_of(patch.on)] != 0) {
     keys.problem("wall", "its velocity leads through the side; a velocity along the side");
   }
+}
+
+void describe_k_epsilon(Keys& keys, cfd::KEpsilonOptions& options) {
+  keys.real({"initial_k", "turbulent kinetic energy at the start", Need::has_default,
+             "5 % intensity at the largest of initial velocity and inlet velocities"},
+            {dimension::turbulent_energy, range::positive}, options.initial_k);
+  keys.real({"initial_epsilon", "its dissipation at the start", Need::has_default,
+             "eddies of ten times the viscosity of the gas"},
+            {dimension::turbulent_dissipation, range::positive}, options.initial_epsilon);
+  keys.real({"prandtl_number", "eddy viscosity over eddy diffusivity of heat"},
+            {dimension::pure_number, range::positive}, options.prandtl_number);
+  keys.real({"schmidt_number", "eddy viscosity over eddy diffusivity of vapour"},
+            {dimension::pure_number, range::positive}, options.schmidt_number);
+  keys.real({"largest_viscosity_ratio", "eddy viscosity over that of the gas, at most"},
+            {dimension::pure_number, range::positive}, options.largest_viscosity_ratio);
+}
+
+void describe_turbulence(Keys& keys, std::optional<cfd::KEpsilonOptions>& options) {
+  cfd::Turbulence model = options ? cfd::Turbulence::k_epsilon : cfd::Turbulence::none;
+  keys.choice({"turbulence", "model of eddies that the grid does not resolve"}, cfd::turbulence_models,
+              model);
+  std::optional<cfd::KEpsilonOptions> held = options;
+  keys.section<cfd::KEpsilonOptions>({"k_epsilon", "of that model: start, numbers, limit"}, held,
+                                     describe_k_epsilon);
+  if (!keys.reading()) return;
+  if (held && model == cfd::Turbulence::none) {
+    keys.problem("k_epsilon", "of no use without the model; turbulence: k_epsilon, or without this section");
+  }
+  options.reset();
+  if (model == cfd::Turbulence::k_epsilon) options = held.value_or(cfd::KEpsilonOptions{});
 }
 
 void describe_solver(Keys& keys, cfd::GasSolverOptions& solver) {
@@ -166,6 +216,7 @@ void describe_gas(Keys& keys, CaseSpec& spec) {
                                 [&](Keys& k, GridSpec& grid) { describe_gas_grid(k, grid, spec.domain); });
         inner.choice({"convection", "how the convected velocity gets from cells to faces"},
                      cfd::convection_models, gas.options.convection);
+        describe_turbulence(inner, gas.options.turbulence);
         inner.list<cfd::BoundaryPatch>(
             {"boundaries", "regions on the sides; what none takes is a wall that the gas sticks to"}, {},
             gas.boundaries, [&](Keys& k, cfd::BoundaryPatch& patch) { describe_boundary(k, gas, patch); });

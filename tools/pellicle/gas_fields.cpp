@@ -34,16 +34,23 @@ Real gas_quantity(const GasFields& gas, int quantity, Index cell) {
                                        gas.reference_pressure);
     case 13:
       return gas.density(cell);
+    case 14:
+      return gas.turbulent_kinetic_energy(cell);
+    case 15:
+      return gas.turbulent_dissipation(cell);
+    case 16:
+      return gas.eddy_viscosity(cell);
     default:
       break;
   }
   throw std::logic_error("a gas quantity without a value");
 }
-static_assert(gas_quantities.size() == 14 && gas_quantities[3].name == "gas_speed" &&
+static_assert(gas_quantities.size() == 17 && gas_quantities[3].name == "gas_speed" &&
                   gas_quantities[4].name == "superficial_velocity_x" &&
                   gas_quantities[9].name == "solids_fraction" &&
                   gas_quantities[10].name == "gas_temperature" &&
-                  gas_quantities[12].name == "relative_humidity",
+                  gas_quantities[12].name == "relative_humidity" &&
+                  gas_quantities[16].name == "eddy_viscosity",
               "the codes above are positions in gas_quantities");
 
 Real pressure_drop(const GasFields& gas) {

@@ -21,7 +21,10 @@ struct GasFields {
   HostArray<const Real> density;            ///< [kg/m3]
   HostArray<const Real> temperature;        ///< [K]
   HostArray<const Real> vapour_mass_fraction;
-  Real reference_pressure = 0;  ///< absolute [Pa]
+  Real reference_pressure = 0;                       ///< absolute [Pa]
+  HostArray<const Real> turbulent_kinetic_energy{};  ///< [m2/s2]
+  HostArray<const Real> turbulent_dissipation{};     ///< [m2/s3]
+  HostArray<const Real> eddy_viscosity{};            ///< [Pa s]
   // Of faces, numbered as cfd::FaceField.
   std::array<HostArray<const Real>, 3> volume_flux{};  ///< of gas along +axis [m3/s]
   std::array<HostArray<const Real>, 3> open_area{};    ///< [m2]

@@ -67,6 +67,7 @@ const std::vector<ModelFamily>& model_families() {
        core::model_list<dem::SizeDistribution>()},
       {"particles.fill.pattern", "Ways to fill a region with particles", fill_patterns},
       {"gas.convection", "Convection schemes of the gas", cfd::convection_models},
+      {"gas.turbulence", "Models of turbulence of the gas", cfd::turbulence_models},
       {"coupling.drag", "Drag laws", drag_laws},
       {"coupling.deposition", "Ways to share a particle's volume among cells", depositions},
       {"coupling.exchange", "Momentum exchange between gas and particles", coupling::exchange_models},

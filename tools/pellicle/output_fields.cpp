@@ -13,6 +13,10 @@ std::string line_quantity_names() {
   return names;
 }
 
+bool is_turbulent_quantity(std::string_view name) {
+  return name == "turbulent_kinetic_energy" || name == "turbulent_dissipation" || name == "eddy_viscosity";
+}
+
 std::string_view unit_of(const core::ModelInfo& info) {
   const auto begin = info.description.rfind('[');
   if (begin == std::string_view::npos) return "-";

@@ -29,7 +29,7 @@ inline constexpr std::array<core::ModelInfo, 14> particle_snapshot_fields{{
 }};
 
 /// Fields of a gas snapshot (gas.h5), all at cell centres.
-inline constexpr std::array<core::ModelInfo, 8> gas_snapshot_fields{{
+inline constexpr std::array<core::ModelInfo, 11> gas_snapshot_fields{{
     {"velocity", "interstitial gas velocity, three components [m/s]"},
     {"pressure", "gas pressure without its hydrostatic part [Pa]"},
     {"void_fraction", "fraction of the cell that is gas [-]"},
@@ -38,6 +38,9 @@ inline constexpr std::array<core::ModelInfo, 8> gas_snapshot_fields{{
     {"temperature", "gas temperature; needs gas.heat [K]"},
     {"vapour_mass_fraction", "mass of vapour per mass of moist gas; needs gas.moisture [-]"},
     {"density", "gas density [kg/m3]"},
+    {"turbulent_kinetic_energy", "k; needs gas.turbulence [m2/s2]"},
+    {"turbulent_dissipation", "epsilon, at which k becomes heat; needs gas.turbulence [m2/s3]"},
+    {"eddy_viscosity", "dynamic viscosity of the eddies; needs gas.turbulence [Pa s]"},
 }};
 
 /// One number of one particle: what lines, histograms and particle probes can show. The position in this list is the
@@ -67,7 +70,7 @@ inline constexpr std::array<core::ModelInfo, 21> particle_quantities{{
 }};
 
 /// One number of one gas cell: what lines and point probes can show, in the order of GasQuantity.
-inline constexpr std::array<core::ModelInfo, 14> gas_quantities{{
+inline constexpr std::array<core::ModelInfo, 17> gas_quantities{{
     {"gas_velocity_x", "x component of the interstitial gas velocity [m/s]"},
     {"gas_velocity_y", "y component of the interstitial gas velocity [m/s]"},
     {"gas_velocity_z", "z component of the interstitial gas velocity [m/s]"},
@@ -82,6 +85,9 @@ inline constexpr std::array<core::ModelInfo, 14> gas_quantities{{
     {"vapour_mass_fraction", "mass of vapour per mass of moist gas; needs gas.moisture [-]"},
     {"relative_humidity", "vapour pressure over that of saturation; needs gas.heat and gas.moisture [-]"},
     {"gas_density", "density of the gas [kg/m3]"},
+    {"turbulent_kinetic_energy", "turbulent kinetic energy of the gas, k; needs gas.turbulence [m2/s2]"},
+    {"turbulent_dissipation", "dissipation of k, epsilon; needs gas.turbulence [m2/s3]"},
+    {"eddy_viscosity", "dynamic viscosity of the gas's eddies; needs gas.turbulence [Pa s]"},
 }};
 
 /// Columns of a bed probe.
@@ -128,6 +134,9 @@ inline constexpr std::array<core::ModelInfo, 3> plane_quantities{{
 
 /// All quantities a line may show: particle_quantities, then gas_quantities.
 std::string line_quantity_names();
+
+/// Whether a quantity of the gas is there only with a model of turbulence.
+bool is_turbulent_quantity(std::string_view name);
 
 /// The unit at the end of a description, without brackets: "m/s".
 std::string_view unit_of(const core::ModelInfo& info);

@@ -405,7 +405,10 @@ void Simulation::write_outputs(bool last) {
               gas.density,
               gas.scalars[index_of(cfd::Scalar::temperature)],
               gas.scalars[index_of(cfd::Scalar::moisture)],
-              spec_.gas->options.reference_pressure};
+              spec_.gas->options.reference_pressure,
+              gas.turbulent_kinetic_energy,
+              gas.turbulent_dissipation,
+              gas.eddy_viscosity};
     for (std::size_t a = 0; a < 3; ++a) {
       fields.volume_flux[a] = gas.volume_flux[a];
       fields.open_area[a] = gas_->geometry().area[a];

@@ -156,11 +156,15 @@ void write_gas_field(core::Hdf5File& file, const std::string& group, const std::
     const auto& values = field == "velocity" ? gas.velocity : gas.pressure_gradient;
     file.write(name, std::span<const double>(&values.data()->x, 3 * count), shape);
   } else if (field == "pressure" || field == "temperature" || field == "vapour_mass_fraction" ||
-             field == "density") {
-    const auto& values = field == "pressure"      ? gas.pressure
-                         : field == "temperature" ? gas.temperature
-                         : field == "density"     ? gas.density
-                                                  : gas.vapour_mass_fraction;
+             field == "density" || field == "turbulent_kinetic_energy" || field == "turbulent_dissipation" ||
+             field == "eddy_viscosity") {
+    const auto& values = field == "pressure"                   ? gas.pressure
+                         : field == "temperature"              ? gas.temperature
+                         : field == "density"                  ? gas.density
+                         : field == "turbulent_kinetic_energy" ? gas.turbulent_kinetic_energy
+                         : field == "turbulent_dissipation"    ? gas.turbulent_dissipation
+                         : field == "eddy_viscosity"           ? gas.eddy_viscosity
+                                                               : gas.vapour_mass_fraction;
     file.write(name, std::span<const double>(values.data(), count), shape);
   } else if (field == "void_fraction" || field == "solids_fraction") {
     std::vector<double> values(count);
