@@ -37,7 +37,7 @@ void compute_velocity_gradient(const FlowGeometry& geometry, const Boundaries& b
         const bool at_end[2] = {position == 0, position == s.n[axis] - 1};
         const Real width = metrics.width[static_cast<std::size_t>(position)];
         for (int b = 0; b < 3; ++b) {
-          const Real* u = fields.velocity.data() + b * n;
+          const Real* u = &fields.velocity(b * n);
           Real change = 0;
           int halves = 0;
           for (std::size_t side = 0; side < 2; ++side) {

@@ -164,9 +164,9 @@ TEST(Histograms, CountsByHand) {
   by_mass.every = 0;  // at the end alone
   Histograms histograms({spec, by_mass}, time, results, std::nullopt);
   const ParticleColumns particles = tests::make_particles({{{}, {1, 0, 0}, 0, 1e-3, 2.0},
-                                                {{}, {0, 3, 0}, 1, 1e-3, 1.0},
-                                                {{}, {0, 0, -3.5}, 2, 1e-3, 1.0},
-                                                {{}, {0, 0, 5}, 3, 1e-3, 4.0}});
+                                                           {{}, {0, 3, 0}, 1, 1e-3, 1.0},
+                                                           {{}, {0, 0, -3.5}, 2, 1e-3, 1.0},
+                                                           {{}, {0, 0, 5}, 3, 1e-3, 4.0}});
   for (int step = 0; step < 5; ++step)
     histograms.sample({.step = step, .time = 0.1 * step, .particles = &particles}, step == 4);
   histograms.flush();
