@@ -80,6 +80,7 @@ TEST(Probes, ParticleIsFoundWhereverItIs) {
   spec.particle = 7;
   Probes probes({spec}, time, results, box, nullptr, std::nullopt);
   std::vector<MadeUpParticle> made_up;
+  made_up.reserve(10);
   for (int id = 0; id < 10; ++id) made_up.push_back({{0.1 * id, 0, 0}, {}, id});
   ParticleColumns particles = tests::make_particles(made_up);
   probes.sample({.step = 1, .time = 0.1, .particles = &particles});
@@ -101,6 +102,7 @@ TEST(Probes, BedByHand) {
   const ResultsFolder results(folder / "r", ResultsFolder::Existing::refuse);
   core::TimeControl time(1, 0.1, 0.1);
   std::vector<std::string> all;
+  all.reserve(bed_quantities.size());
   for (const auto& info : bed_quantities) all.emplace_back(info.name);
   ProbeSpec spec = named("bed", all);
   spec.bed = true;
@@ -108,6 +110,7 @@ TEST(Probes, BedByHand) {
   Probes probes({spec}, time, results, box, &gas.grid, std::nullopt);
   // 200 particles at heights 0.001, 0.002, ... 0.2 above the floor at z = -0.5: the 198th is the 99 % one.
   std::vector<MadeUpParticle> made_up;
+  made_up.reserve(200);
   for (int id = 0; id < 200; ++id) {
     made_up.push_back(
         {{0, 0, -0.5 + 0.001 * (id + 1)}, {3, 0, id == 5 ? 4.0 : 0.0}, id, 1e-3, id < 100 ? 1.0 : 3.0});

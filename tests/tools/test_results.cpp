@@ -129,6 +129,7 @@ TEST(Outputs, ResumedRunWritesTheSameFiles) {
 
   const auto state_at = [](int step) {
     std::vector<tests::MadeUpParticle> made_up;
+    made_up.reserve(50);
     for (int id = 0; id < 50; ++id) {
       made_up.push_back({{0.02 * id, 0.5, 0.5}, {0, 0, 0.01 * id * step}, id});
     }

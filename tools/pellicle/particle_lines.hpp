@@ -24,7 +24,7 @@ class ParticleLine {
   /// `quantity`: position in particle_quantities.
   ParticleLine(const LineGeometry& line, int quantity);
 
-  void add(const ParticleColumns& particles);
+  void add(const ParticleColumns& columns);
 
   BinSums sums() const;
   void set_sums(const BinSums& sums);

@@ -83,6 +83,6 @@ struct HostParticles {
 };
 
 /// Copies the particles to the host and sorts them by id.
-HostParticles copy_to_host(const ParticleColumns& particles);
+HostParticles copy_to_host(const ParticleColumns& columns);
 
 }  // namespace pellicle::tools
