@@ -128,8 +128,8 @@ struct CountOpen {
   DeviceArray<Visit> visits;
   DeviceArray<std::int64_t> counts;
   KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
-    const Real since = visits(p).entries > 0 ? time - visits(p).entered : time;
-    Kokkos::atomic_inc(&counts(bin_of(since, longest, bins)));
+    if (visits(p).entries == 0) return;
+    Kokkos::atomic_inc(&counts(bin_of(time - visits(p).entered, longest, bins)));
   }
 };
 

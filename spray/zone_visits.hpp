@@ -95,7 +95,7 @@ inline constexpr Index zone_groups = 16;
 struct ZoneHistograms {
   std::vector<std::int64_t> cycle_time;  ///< of cycles that have ended
   std::vector<std::int64_t>
-      open_cycle;  ///< since the last entry, of particles that have entered; or since the start
+      open_cycle;  ///< since the last entry, of particles that have entered
   std::vector<std::int64_t> residence;  ///< of visits that have ended
 };
 

@@ -65,12 +65,19 @@ output:
     - {name: centre, point: ["20 mm", "5 mm", "30 mm"], quantities: [pressure, void_fraction], every: "2 ms"}
     - {name: bead, particle: 7}
     - {name: whole, bed: {}}
+    - {name: coated, coating: {}}
     - {name: out, side: top, quantities: [left_mass, outflow_rate]}
     - {name: throat, plane: {axis: z, at: "40 mm", box: {min: ["10 mm", 0, 0], max: ["30 mm", "10 mm", 0]}, mean: flow}}
     - {name: round, plane: {axis: x, at: "20 mm", disc: {centre: [0, "5 mm", "50 mm"], radius: "4 mm"}},
        quantities: [mass_flow, pressure]}
   histograms:
     - {name: speeds, quantity: particle_speed, bins: 20, min: 0, max: 2, weight: mass, every: "0.5 s"}
+    - {name: rising, quantity: particle_velocity_z, against: particle_diameter, against_bins: 5,
+       against_min: 0.001, against_max: 0.002}
+  zones:
+    - {name: middle, box: {min: [0, 0, "20 mm"], max: ["40 mm", "10 mm", "40 mm"]}, every: "0.1 s",
+       shortest_absence: "10 ms", longest_time: "1 s", bins: 25, size_classes: 3}
+    - {name: core, cylinder: {from: ["20 mm", "5 mm", 0], to: ["20 mm", "5 mm", "60 mm"], radius: "4 mm"}}
 )";
 
 /// The same domain with cells given by their faces; gas alone.

@@ -55,6 +55,10 @@ class Checker {
       if (spec_.particles.empty())
         wrong(histogram.where, "quantity", "a case without particles has none; no histograms");
     }
+    for (const auto& zone : spec_.output.zones) {
+      if (spec_.particles.empty())
+        wrong(zone.where, "name", "a case without particles has none that pass; no zones");
+    }
     warn_of_unused();
   }
 
@@ -98,6 +102,7 @@ class Checker {
     check_unique(spec_.output.lines);
     check_unique(spec_.output.probes);
     check_unique(spec_.output.histograms);
+    check_unique(spec_.output.zones);
   }
 
   /// Cells are counted by an Index; says whether they can be.
@@ -369,6 +374,11 @@ class Checker {
             fmt::format("{} needs gas, which the case has not; {}", name,
                         core::allowed_names(particle_quantities)));
     if (of_gas && spec_.gas) check_carried(where, key, name);
+    if (!of_gas && !spec_.follows(name)) {
+      wrong(where, key,
+            fmt::format("{} needs {}, which the case has not; another name", name,
+                        name == "particle_temperature" ? "heat" : "spray"));
+    }
     if (!of_gas && spec_.particles.empty()) {
       wrong(where, key,
             fmt::format("{} needs particles, which the case has not; {}", name,
@@ -458,7 +468,10 @@ class Checker {
         if (spec_.gas) check_carried(probe.where, "quantities", name);
       }
     } else if (spec_.particles.empty()) {
-      wrong(probe.where, probe.bed ? "bed" : (probe.wall ? "wall" : (probe.side ? "side" : "particle")),
+      wrong(probe.where,
+            probe.bed       ? "bed"
+            : probe.coating ? "coating"
+                            : (probe.wall ? "wall" : (probe.side ? "side" : "particle")),
             "the case has no particles; point or plane");
     } else if (probe.side && !open(static_cast<cfd::Side>(*probe.side))) {
       wrong(probe.where, "side",

@@ -94,8 +94,8 @@ std::vector<std::string> all_quantities(const CaseSpec& spec, const ProbeSpec& p
   for (const auto& quantity : quantities_of(probe)) {
     const bool warm = quantity.name == "gas_temperature" || quantity.name == "relative_humidity";
     const bool moist = quantity.name == "vapour_mass_fraction" || quantity.name == "relative_humidity";
-    const bool there =
-        (!warm || (spec.gas && spec.gas->heat)) && (!moist || (spec.gas && spec.gas->moisture));
+    const bool there = (!warm || (spec.gas && spec.gas->heat)) &&
+                       (!moist || (spec.gas && spec.gas->moisture)) && spec.follows(quantity.name);
     const bool eddies = !is_turbulent_quantity(quantity.name) || (spec.gas && spec.gas->options.turbulence);
     if (there && eddies) names.emplace_back(quantity.name);
   }
@@ -122,6 +122,9 @@ void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
   }
   for (auto& probe : spec.output.probes) {
     if (probe.quantities.empty()) probe.quantities = all_quantities(spec, probe);
+  }
+  for (auto& zone : spec.output.zones) {
+    if (zone.longest_time == 0) zone.longest_time = spec.time.end;
   }
   for (auto& line : spec.output.lines) {
     if (line.thickness == 0) line.thickness = default_thickness(spec, line);

@@ -91,7 +91,8 @@ void describe_probe(Keys& keys, ProbeSpec& probe) {
             probe.wall);
   keys.choice({"side", "particles that leave through this open side"}, domain_sides, probe.side);
   keys.mark({"bed", "all particles together"}, probe.bed);
-  keys.exactly_one({"point", "plane", "particle", "wall", "side", "bed"});
+  keys.mark({"coating", "film and coating of all particles together"}, probe.coating);
+  keys.exactly_one({"point", "plane", "particle", "wall", "side", "bed", "coating"});
   std::optional<std::vector<int>> positions;
   if (!probe.quantities.empty()) {
     positions.emplace();
@@ -130,10 +131,46 @@ void describe_histogram(Keys& keys, HistogramSpec& histogram) {
   std::optional<int> weight = histogram.by_mass ? 1 : 0;
   keys.choice({"weight", "what a particle counts"}, weights, weight);
   histogram.by_mass = *weight == 1;
+  std::optional<int> against;
+  if (histogram.against) against = core::find_model(particle_quantities, *histogram.against);
+  keys.choice({"against", "a second quantity: the joint distribution of the two"}, particle_quantities,
+              against);
+  if (against) histogram.against = particle_quantities[static_cast<std::size_t>(*against)].name;
+  keys.whole({"against_bins", "number of bins of the second quantity"}, {1, 10'000}, histogram.against_bins);
+  keys.real({"against_min", "lower end of its first bin, SI", Need::has_default, "smallest value"}, {},
+            histogram.against_min);
+  keys.real({"against_max", "upper end of its last bin, SI", Need::has_default, "largest value"}, {},
+            histogram.against_max);
   keys.real({"every", "time between two histograms; 0: only at the end"}, interval, histogram.every);
   if (keys.reading() && histogram.min && histogram.max && !(*histogram.max > *histogram.min)) {
     keys.problem("max", "it is not above min; a larger number");
   }
+  if (!keys.reading()) return;
+  if (histogram.against_min && histogram.against_max && !(*histogram.against_max > *histogram.against_min)) {
+    keys.problem("against_max", "it is not above against_min; a larger number");
+  }
+  for (const char* key : {"against_bins", "against_min", "against_max"}) {
+    if (keys.given(key) && !histogram.against)
+      keys.problem(key, "there is no second quantity; against as well");
+  }
+}
+
+void describe_zone(Keys& keys, ZoneSpec& zone) {
+  if (keys.reading()) zone.where = keys.where();
+  keys.text({"name", "of the files zones/NAME.csv and others", Need::required}, TextRule::name, zone.name);
+  keys.section<Box>({"box", "the zone is a box"}, zone.box, describe_box);
+  keys.section<dem::CylinderRegion>({"cylinder", "the zone is a cylinder"}, zone.cylinder, describe_cylinder);
+  keys.exactly_one({"box", "cylinder"});
+  keys.real({"every", "time between two rows; 0: only at the end"}, interval, zone.every);
+  keys.real({"shortest_absence", "a particle that is away for less has not left"}, interval,
+            zone.shortest_absence);
+  real_or_unset(keys,
+                {"longest_time", "upper end of the distributions of cycle and residence times",
+                 Need::has_default, "time.end"},
+                {dimension::duration, range::positive}, zone.longest_time);
+  keys.whole({"bins", "of these distributions"}, {1, 10'000}, zone.bins);
+  keys.whole({"size_classes", "of equal width in diameter, for the sums in zones/NAME_groups.csv"}, {1, 100},
+             zone.size_classes);
 }
 
 }  // namespace
@@ -144,29 +181,32 @@ core::ModelList quantities_of(const ProbeSpec& probe) {
   if (probe.particle) return particle_quantities;
   if (probe.wall) return wall_quantities;
   if (probe.side) return side_quantities;
+  if (probe.coating) return coating_quantities;
   return bed_quantities;
 }
 
 void describe_output(Keys& keys, CaseSpec& spec) {
-  keys.section<OutputSpec>({"output", "what is written to the results folder, besides summary.json"},
-                           spec.output, [](Keys& inner, OutputSpec& output) {
-                             inner.section<OutputSpec>(
-                                 {"checkpoint", "state from which a run can go on"}, output,
-                                 [](Keys& k, OutputSpec& o) {
-                                   k.real({"every", "simulated time between two; 0: only at the end"},
-                                          interval, o.checkpoint_every);
-                                 });
-                             inner.section<SnapshotSpec>({"snapshots", "fields over time, for ParaView"},
-                                                         output.snapshots, describe_snapshots);
-                             inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {},
-                                                  output.lines, describe_line);
-                             inner.list<ProbeSpec>({"probes",
-                                                    "values over time at points, over planes, of single "
-                                                    "particles, of walls, of open sides, of the bed"},
-                                                   {}, output.probes, describe_probe);
-                             inner.list<HistogramSpec>({"histograms", "distributions over the particles"}, {},
-                                                       output.histograms, describe_histogram);
-                           });
+  keys.section<OutputSpec>(
+      {"output", "what is written to the results folder, besides summary.json"}, spec.output,
+      [](Keys& inner, OutputSpec& output) {
+        inner.section<OutputSpec>({"checkpoint", "state from which a run can go on"}, output,
+                                  [](Keys& k, OutputSpec& o) {
+                                    k.real({"every", "simulated time between two; 0: only at the end"},
+                                           interval, o.checkpoint_every);
+                                  });
+        inner.section<SnapshotSpec>({"snapshots", "fields over time, for ParaView"}, output.snapshots,
+                                    describe_snapshots);
+        inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {}, output.lines,
+                             describe_line);
+        inner.list<ProbeSpec>({"probes",
+                               "values over time at points, over planes, of single "
+                               "particles, of walls, of open sides, of the bed, of its coating"},
+                              {}, output.probes, describe_probe);
+        inner.list<HistogramSpec>({"histograms", "distributions over the particles"}, {}, output.histograms,
+                                  describe_histogram);
+        inner.list<ZoneSpec>({"zones", "where passing particles are followed: cycle and residence times"}, {},
+                             output.zones, describe_zone);
+      });
 }
 
 }  // namespace pellicle::tools

@@ -80,4 +80,14 @@ CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {
   return CartesianGrid(faces, domain.periodic);
 }
 
+bool CaseSpec::follows(std::string_view quantity) const {
+  constexpr bool heat = false, spray = false;
+  if (quantity == "particle_temperature" || quantity == "particle_temperature_mean") return heat;
+  if (quantity == "hits" || quantity == "first_hit_time" || quantity == "last_hit_time") return spray;
+  if (quantity == "film_liquid" || quantity == "film_solids" || quantity == "coating_thickness") {
+    return heat || spray;
+  }
+  return true;
+}
+
 }  // namespace pellicle::tools

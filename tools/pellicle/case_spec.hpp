@@ -323,6 +323,7 @@ struct ProbeSpec {
   std::optional<std::string> wall;  ///< name
   std::optional<int> side;          ///< a position in `domain_sides`
   bool bed = false;
+  bool coating = false;
   std::vector<std::string> quantities;
   Real every = 1e-3;  ///< [s]
 };
@@ -335,7 +336,23 @@ struct HistogramSpec {
   Index bins = 50;
   std::optional<Real> min, max;  ///< in the quantity's unit; unset: from the particles
   bool by_mass = false;
-  Real every = 0;  ///< [s]
+  std::optional<std::string> against;  ///< a second quantity: the joint distribution of the two
+  Index against_bins = 20;
+  std::optional<Real> against_min, against_max;  ///< in that quantity's unit; unset: from the particles
+  Real every = 0;                                ///< [s]
+};
+
+/// A zone whose passing particles are followed: one of box and cylinder.
+struct ZoneSpec {
+  std::string where;
+  std::string name;
+  std::optional<Box> box;  ///< [m]
+  std::optional<dem::CylinderRegion> cylinder;
+  Real every = 0;             ///< time between two rows; 0: only at the end [s]
+  Real shortest_absence = 0;  ///< [s]
+  Real longest_time = 0;      ///< upper end of the distributions; 0 until defaults are filled in [s]
+  Index bins = 50;
+  Index size_classes = 1;
 };
 
 struct OutputSpec {
@@ -344,6 +361,7 @@ struct OutputSpec {
   std::vector<LineSpec> lines;
   std::vector<ProbeSpec> probes;
   std::vector<HistogramSpec> histograms;
+  std::vector<ZoneSpec> zones;
 };
 
 struct CaseSpec {
@@ -367,6 +385,8 @@ struct CaseSpec {
   /// `file:line: key.path` of a key such as `time.gas_step`, for messages; the line is that of the section if the key
   /// was not given.
   std::string where(const std::string& path) const;
+  /// Whether a quantity of particles is kept up in this case: temperature, film and hits are with heat or spray only.
+  bool follows(std::string_view quantity) const;
 };
 
 /// Gives a grid with a refinement the cells and faces that follow from it; throws std::length_error if they are more than

@@ -37,8 +37,10 @@ constexpr std::array<core::ModelInfo, N + M> join(const std::array<core::ModelIn
   return joined;
 }
 constexpr auto line_quantity_list = join(particle_quantities, gas_quantities);
-constexpr auto probe_quantity_list = join(
-    join(join(join(line_quantity_list, bed_quantities), wall_quantities), side_quantities), plane_quantities);
+constexpr auto probe_quantity_list =
+    join(join(join(join(join(line_quantity_list, bed_quantities), coating_quantities), wall_quantities),
+              side_quantities),
+         plane_quantities);
 constexpr auto plane_probe_quantity_list = join(plane_quantities, gas_quantities);
 
 }  // namespace
@@ -84,6 +86,7 @@ const std::vector<ModelFamily>& quantity_families() {
       {"quantities.gas", "Of the gas, for lines, probes of a point and, as means, of a plane",
        gas_quantities},
       {"quantities.bed", "Of the whole bed, for probes", bed_quantities},
+      {"quantities.coating", "Of the coating of the whole bed, for probes", coating_quantities},
       {"quantities.wall", "Of a wall, for probes; means over the time since the row before", wall_quantities},
       {"quantities.side", "Of an open side, for probes", side_quantities},
       {"quantities.plane", "Of the gas through a plane, for probes", plane_quantities},

@@ -25,8 +25,9 @@ std::string_view unit_of(const core::ModelInfo& info) {
 
 std::string column_header(std::string_view quantity) {
   for (const core::ModelList list : {core::ModelList(particle_quantities), core::ModelList(gas_quantities),
-                                     core::ModelList(bed_quantities), core::ModelList(wall_quantities),
-                                     core::ModelList(side_quantities), core::ModelList(plane_quantities)}) {
+                                     core::ModelList(bed_quantities), core::ModelList(coating_quantities),
+                                     core::ModelList(wall_quantities), core::ModelList(side_quantities),
+                                     core::ModelList(plane_quantities)}) {
     const int found = core::find_model(list, quantity);
     if (found >= 0) {
       const auto& info = list[static_cast<std::size_t>(found)];

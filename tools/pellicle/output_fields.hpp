@@ -106,6 +106,19 @@ inline constexpr std::array<core::ModelInfo, 11> bed_quantities{{
     {"solids_volume", "volume of all particles [m3]"},
 }};
 
+/// Columns of a coating probe.
+inline constexpr std::array<core::ModelInfo, 9> coating_quantities{{
+    {"coating_mass", "solids in the films of all particles [kg]"},
+    {"coating_mass_mean", "the same over the number of particles [kg]"},
+    {"coating_mass_cov", "standard deviation of a particle's coating over its mean [-]"},
+    {"coated_share", "share of the particles with any coating [-]"},
+    {"coating_thickness_mean", "mean thickness of the dry coating, uncoated particles included [m]"},
+    {"coating_thickness_cov", "standard deviation of the thickness over its mean [-]"},
+    {"film_liquid_mass", "liquid in the films of all particles [kg]"},
+    {"wet_share", "share of the particles with liquid on them [-]"},
+    {"particle_temperature_mean", "mean temperature of the particles; 0 without heat [K]"},
+}};
+
 /// Columns of a wall probe: what particles do to the wall, averaged since the row before.
 inline constexpr std::array<core::ModelInfo, 7> wall_quantities{{
     {"wall_force_x", "x component of the force of the particles on the wall [N]"},

@@ -17,6 +17,7 @@ Outputs::Outputs(const CaseSpec& spec, const ResultsFolder& folder, core::TimeCo
       lines_(spec.output.lines, time, gas_grid),
       probes_(spec.output.probes, time, folder, spec.domain.box, gas_grid, time_of(time, resume_step)),
       histograms_(spec.output.histograms, time, folder, time_of(time, resume_step)),
+      zones_(spec.output.zones, time, folder, time_of(time, resume_step)),
       snapshot_schedule_(time.schedule(spec.output.snapshots.every, "output.snapshots.every")) {
   if (snapshot_schedule_.steps == 0) return;
   if (!spec.particles.empty()) {
@@ -32,6 +33,7 @@ void Outputs::sample(const OutputState& state, bool last) {
   lines_.sample(state.step, state.particles, state.gas);
   probes_.sample(state);
   histograms_.sample(state, last);
+  zones_.sample(state, last);
   if (!snapshot_schedule_.due(state.step) && !last) return;
   if (particle_snapshots_) particle_snapshots_->write(state.step, state.time, state.host_particles());
   if (gas_snapshots_ && state.gas != nullptr) gas_snapshots_->write(state.step, state.time, *state.gas);
@@ -41,6 +43,7 @@ void Outputs::flush() {
   lines_.write(folder_);
   probes_.flush();
   histograms_.flush();
+  zones_.flush();
 }
 
 }  // namespace pellicle::tools

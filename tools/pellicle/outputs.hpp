@@ -9,10 +9,11 @@
 #include "tools/pellicle/probes.hpp"
 #include "tools/pellicle/results_folder.hpp"
 #include "tools/pellicle/snapshots.hpp"
+#include "tools/pellicle/zone_outputs.hpp"
 
 namespace pellicle::tools {
 
-/// Snapshots, lines, probes and histograms of a case.
+/// Snapshots, lines, probes, histograms and zones of a case.
 class Outputs {
  public:
   /// `gas_grid` is null without gas. `resume_step` is the step of the checkpoint that the run goes on from: files
@@ -44,6 +45,7 @@ class Outputs {
   Lines lines_;
   Probes probes_;
   Histograms histograms_;
+  ZoneOutputs zones_;
   core::Schedule snapshot_schedule_;
   std::optional<ParticleSnapshots> particle_snapshots_;
   std::optional<GasSnapshots> gas_snapshots_;

@@ -30,6 +30,7 @@ std::vector<int> find_all(core::ModelList known, const ProbeSpec& spec) {
 
 core::ModelList known_quantities(const ProbeSpec& spec) {
   if (spec.bed) return bed_quantities;
+  if (spec.coating) return coating_quantities;
   if (spec.particle) return particle_quantities;
   if (spec.wall) return wall_quantities;
   if (spec.side) return side_quantities;
@@ -122,6 +123,9 @@ void Probes::append(Probe& probe, const OutputState& state) {
     const BedFigures bed = compute_bed_figures(state.host_particles(), floor_);
     for (const auto& name : probe.spec.quantities)
       row.push_back(bed_quantity(name, bed, state.gas, state.contacts));
+  } else if (probe.spec.coating) {
+    const CoatingFigures coating = compute_coating_figures(state.host_particles());
+    for (const auto& name : probe.spec.quantities) row.push_back(coating_quantity(name, coating));
   } else if (probe.spec.particle) {
     ParticleSample particle;
     const bool found =
@@ -198,48 +202,98 @@ Histograms::Histograms(const std::vector<HistogramSpec>& specs, core::TimeContro
   for (const auto& spec : specs) {
     const int quantity = core::find_model(particle_quantities, spec.quantity);
     if (quantity < 0) throw InputError(fmt::format("{}: unknown quantity {}", spec.where, spec.quantity));
-    const auto unit = std::string(unit_of(particle_quantities[static_cast<std::size_t>(quantity)]));
-    const std::vector<std::string> header{"time [s]", fmt::format("{}_from [{}]", spec.quantity, unit),
-                                          fmt::format("{}_to [{}]", spec.quantity, unit),
-                                          spec.by_mass ? "mass [kg]" : "count [-]",
-                                          fmt::format("density [1/({})]", unit)};
+    std::vector<std::string> header{"time [s]"};
+    std::string units;
+    const auto add = [&](const std::string& name) {
+      const int found = core::find_model(particle_quantities, name);
+      const auto unit = std::string(unit_of(particle_quantities[static_cast<std::size_t>(found)]));
+      header.push_back(fmt::format("{}_from [{}]", name, unit));
+      header.push_back(fmt::format("{}_to [{}]", name, unit));
+      units += fmt::format("({})", unit);
+      return found;
+    };
+    add(spec.quantity);
+    const int against = spec.against ? add(*spec.against) : -1;
+    header.emplace_back(spec.by_mass ? "mass [kg]" : "count [-]");
+    header.push_back(fmt::format("density [1/{}]", units));
     histograms_.push_back({spec, time.schedule(spec.every, "output.histograms." + spec.name + ".every"),
-                           quantity,
+                           quantity, against,
                            core::CsvSeries(folder.csv("histograms", spec.name), header, resume_time)});
+  }
+}
+
+namespace {
+
+/// Bins of one quantity.
+struct Bins {
+  Real from, width;
+  std::size_t count;
+
+  Bins(const std::vector<Real>& values, std::optional<Real> min, std::optional<Real> max, Index bins)
+      : count(static_cast<std::size_t>(bins)) {
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    from = min.value_or(*least);
+    Real to = max.value_or(*most);
+    // All equal: one bin's width around the value, so that the bins have a size.
+    if (!(to > from)) to = from + std::max(1e-12, 1e-6 * std::abs(from));
+    width = (to - from) / bins;
+  }
+  Real low(std::size_t bin) const { return from + width * static_cast<Real>(bin); }
+  /// `count` for what is outside.
+  std::size_t find(Real value) const {
+    const Real at = (value - from) / width;
+    if (!(at >= 0) || value > low(count)) return count;
+    return std::min(count - 1, static_cast<std::size_t>(at));
+  }
+};
+
+std::vector<Real> values_of(const HostParticles& particles, int quantity) {
+  std::vector<Real> values(particles.count());
+  for (std::size_t p = 0; p < values.size(); ++p)
+    values[p] = particle_quantity(quantity, particles.sample(p));
+  return values;
+}
+
+}  // namespace
+
+void Histograms::append(Histogram& histogram, const OutputState& state) {
+  const HistogramSpec& spec = histogram.spec;
+  const HostParticles& particles = state.host_particles();
+  if (particles.count() == 0) return;
+  const std::vector<Real> values = values_of(particles, histogram.quantity);
+  const Bins bins(values, spec.min, spec.max, spec.bins);
+  const bool joint = histogram.against >= 0;
+  const std::vector<Real> others = joint ? values_of(particles, histogram.against) : std::vector<Real>{0};
+  const Bins other_bins(others, joint ? spec.against_min : 0.0, joint ? spec.against_max : 1.0,
+                        joint ? spec.against_bins : 1);
+  std::vector<Real> amount(bins.count * other_bins.count);
+  Real total = 0;
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const Real weight = spec.by_mass ? particles.mass[p] : 1;
+    total += weight;
+    const std::size_t bin = bins.find(values[p]), other = joint ? other_bins.find(others[p]) : 0;
+    if (bin < bins.count && other < other_bins.count) amount[bin * other_bins.count + other] += weight;
+  }
+  for (std::size_t b = 0; b < bins.count; ++b) {
+    for (std::size_t o = 0; o < other_bins.count; ++o) {
+      std::vector<double> row{state.time, bins.low(b), bins.low(b) + bins.width};
+      Real size = bins.width;
+      if (joint) {
+        row.push_back(other_bins.low(o));
+        row.push_back(other_bins.low(o) + other_bins.width);
+        size *= other_bins.width;
+      }
+      row.push_back(amount[b * other_bins.count + o]);
+      row.push_back(amount[b * other_bins.count + o] / (total * size));
+      histogram.file.append(row);
+    }
   }
 }
 
 void Histograms::sample(const OutputState& state, bool last) {
   for (auto& histogram : histograms_) {
     const bool at_end_alone = histogram.schedule.steps == 0;
-    if (!(at_end_alone ? last : histogram.schedule.due(state.step))) continue;
-    const HistogramSpec& spec = histogram.spec;
-    const HostParticles& particles = state.host_particles();
-    if (particles.count() == 0) continue;
-    std::vector<Real> values(particles.count());
-    for (std::size_t p = 0; p < values.size(); ++p) {
-      values[p] = particle_quantity(histogram.quantity, particles.sample(p));
-    }
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    const Real from = spec.min.value_or(*least);
-    Real to = spec.max.value_or(*most);
-    // All equal: one bin's width around the value, so that the bins have a size.
-    if (!(to > from)) to = from + std::max(1e-12, 1e-6 * std::abs(from));
-    const auto bins = static_cast<std::size_t>(spec.bins);
-    const Real width = (to - from) / spec.bins;
-    std::vector<Real> amount(bins);
-    Real total = 0;
-    for (std::size_t p = 0; p < values.size(); ++p) {
-      const Real weight = spec.by_mass ? particles.mass[p] : 1;
-      total += weight;
-      if (values[p] < from || values[p] > to) continue;
-      amount[std::min(bins - 1, static_cast<std::size_t>((values[p] - from) / width))] += weight;
-    }
-    for (std::size_t b = 0; b < bins; ++b) {
-      const Real low = from + width * static_cast<Real>(b);
-      const std::array<double, 5> row{state.time, low, low + width, amount[b], amount[b] / (total * width)};
-      histogram.file.append(row);
-    }
+    if (at_end_alone ? last : histogram.schedule.due(state.step)) append(histogram, state);
   }
 }
 

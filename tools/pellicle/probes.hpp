@@ -11,11 +11,13 @@
 #include "core/time_control.hpp"
 #include "tools/pellicle/bed.hpp"
 #include "tools/pellicle/case_spec.hpp"
+#include "tools/pellicle/coating_figures.hpp"
 #include "tools/pellicle/find_particle.hpp"
 #include "tools/pellicle/gas_fields.hpp"
 #include "tools/pellicle/plane_section.hpp"
 #include "tools/pellicle/results_folder.hpp"
 #include "tools/pellicle/wall_figures.hpp"
+#include "tools/pellicle/zone_outputs.hpp"
 
 namespace pellicle::tools {
 
@@ -29,6 +31,7 @@ struct OutputState {
   ContactFigures contacts{};
   const std::vector<WallFigures>* walls = nullptr;  ///< null without particles
   const SideFigures* sides = nullptr;               ///< null without particles
+  const Zones* zones = nullptr;                     ///< null without particles
 
   /// Empty without particles.
   const HostParticles& host_particles() const;
@@ -69,7 +72,8 @@ class Probes {
   Real floor_;
 };
 
-/// All histograms of a case: rows time, from, to, count or mass, density (share of the total per unit of the quantity).
+/// All histograms of a case: rows time, from, to, count or mass, density (share of the total per unit of the quantity); a
+/// joint one has the second quantity's from and to behind those of the first, and the density per both units.
 class Histograms {
  public:
   Histograms(const std::vector<HistogramSpec>& specs, core::TimeControl& time, const ResultsFolder& folder,
@@ -84,8 +88,10 @@ class Histograms {
     HistogramSpec spec;
     core::Schedule schedule;
     int quantity = 0;
+    int against = -1;  ///< -1: none
     core::CsvSeries file;
   };
+  static void append(Histogram& histogram, const OutputState& state);
   std::vector<Histogram> histograms_;
 };
 

@@ -42,6 +42,8 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
             spec.particles.empty() ? 0 : spec.time.longest_settling()) {
   if (!spec_.particles.empty()) {
     particles_.emplace(make_engine_setup(spec_, time_.particle_step()));
+    zones_ = make_zones(spec_, particles_->particles());
+    for (spray::ZoneVisits& zone : zones_) particles_->attach(zone);
     feeds_ = make_feeds(spec_, particles_->setup());
   }
   if (spec_.gas) {
@@ -179,6 +181,7 @@ void Simulation::advance_outer_step() {
   }
   watch_contacts();
   time_.advance();
+  if (time_.step() > 0) watch_zones();
   if (spec_.time.settle_until && time_.settling()) watch_settling();
   if (time_.step() == 0) release_gas();  // from below: the bed has settled
 }
@@ -281,6 +284,7 @@ void Simulation::release_gas() {
     settled_left_mass_ = particles_->left_mass();
     particles_->start_walls();
     for (WallFigures& wall : walls_) wall.impulse = wall.angular_impulse = Vec3{};
+    watch_zones();
   }
   if (gas_) ledger_.open(Conserved::gas_mass, gas_->balance().mass_initial);
   for (const auto& [quantity, scalar] : carried_by_gas) {
@@ -297,6 +301,11 @@ void Simulation::release_gas() {
 /// book what a fixed particle receives: what it gives is the opposite.
 Vec3 Simulation::impulse_through_walls() const {
   return wall_impulse_ - support_impulse_ - particles_->left_momentum();
+}
+
+void Simulation::watch_zones() {
+  const core::Timers::Scope scope(timers_, Part::output);
+  for (spray::ZoneVisits& zone : zones_) zone.update(time_.time(), particle_columns().film);
 }
 
 void Simulation::watch_contacts() {
@@ -394,6 +403,7 @@ void Simulation::write_outputs(bool last) {
     state.particles = &columns;
   }
   if (particles_) state.walls = &walls_;
+  if (particles_) state.zones = &zones_;
   if (particles_) state.sides = &particles_->left_by_side();
   if (gas_) {
     const cfd::GasState& gas = gas_->state();

@@ -65,6 +65,7 @@ class Simulation {
 
   Vec3 impulse_through_walls() const;
   void watch_contacts();
+  void watch_zones();
   void update_ledger();
   void write_outputs(bool last = false);
   Real contacts_per_particle() const;
@@ -82,6 +83,7 @@ class Simulation {
 
   std::optional<dem::Engine> particles_;
   std::vector<dem::Feed> feeds_;
+  Zones zones_;
   std::optional<cfd::GasSolver> gas_;
   std::optional<coupling::MomentumExchange> exchange_;
   std::optional<Outputs> outputs_;

@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""The end-of-batch prediction against made-up particles whose later coating is known because it was drawn as well."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+TOP = pathlib.Path(os.environ.get("PELLICLE_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
+SCRIPT = TOP / "tools" / "plot" / "predict_coating.py"
+GROUPS = 16
+
+
+def draw(rng, particles, until, gamma_shape, factor):
+    """Entries and gains of stationary renewal processes: gamma cycle times of mean 1 s, exponential gains of mean 1 ug
+    times a factor of each particle. Returns for each particle the times of its entries in (0, until) and its gains there;
+    what an entry brings is there at once."""
+    entries, gains = [], []
+    for p in range(particles):
+        t = -50 * rng.random()  # long before, so that time 0 is like any other
+        times = []
+        while t < until:
+            t += rng.gamma(gamma_shape, 1 / gamma_shape)
+            if 0 < t < until:
+                times.append(t)
+        entries.append(np.array(times))
+        gains.append(1e-9 * factor[p] * rng.exponential(size=len(times)))
+    return entries, gains
+
+
+def write_results(folder, entries, gains, time, classes, longest=4.0, bins=40):
+    (folder / "zones").mkdir()
+    (folder / "histograms").mkdir()
+    header = ("time [s],size_class [-],diameter_from [m],diameter_to [m],group [-],particles [-],entered [-],entries [-],"
+              "cycles [-],cycle_time [s],cycle_time_squared [s2],gain [kg],gain_squared [kg2],time_gain [s kg],"
+              "coating [kg],coating_squared [kg2]")
+    sums = np.zeros((max(classes) + 1, GROUPS, 11))
+    ended, still_open = np.zeros(bins + 1), np.zeros(bins + 1)
+    for p, (when, gain) in enumerate(zip(entries, gains)):
+        seen = when < time
+        t, g = when[seen], gain[seen]
+        cycles = np.diff(t)
+        # From entry to entry: what the first of the two brought.
+        between = g[:-1]
+        coating = g.sum()
+        row = sums[classes[p], p % GROUPS]
+        row += [1, len(t) > 0, len(t), len(cycles), cycles.sum(), (cycles**2).sum(), between.sum(), (between**2).sum(),
+                (cycles * between).sum(), coating, coating**2]
+        for c in cycles:
+            ended[min(bins, int(c / longest * bins))] += 1
+        if len(t):
+            still_open[min(bins, int((time - t[-1]) / longest * bins))] += 1
+    rows = [header]
+    for c in range(sums.shape[0]):
+        for g in range(GROUPS):
+            rows.append(",".join(map(repr, [float(time), c, 0.0, 0.0, g, *map(float, sums[c, g])])))
+    (folder / "zones" / "pass_groups.csv").write_text("\n".join(rows) + "\n")
+    rows = ["time [s],from [s],to [s],cycles [-],open_cycles [-],visits [-]"]
+    for b in range(bins + 1):
+        to = "inf" if b == bins else repr(longest * (b + 1) / bins)
+        rows.append(f"{time!r},{longest * b / bins!r},{to},{ended[b]},{still_open[b]},0")
+    (folder / "histograms" / "pass_times.csv").write_text("\n".join(rows) + "\n")
+
+
+def run(folder, *more):
+    return subprocess.run([sys.executable, str(SCRIPT), str(folder), "pass", *map(str, more)], capture_output=True,
+                          text=True)
+
+
+class Predict(unittest.TestCase):
+    def check(self, gamma_shape, sizes, seed):
+        rng = np.random.default_rng(seed)
+        particles, measured, batch = 3000, 4.0, 40.0
+        classes = [p % sizes for p in range(particles)]
+        factor = [1 + 0.5 * (c - (sizes - 1) / 2) for c in classes]
+        entries, gains = draw(rng, particles, batch, gamma_shape, factor)
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            write_results(folder, entries, gains, measured, classes)
+            done = run(folder, "--time", batch, "--json", folder / "p.json")
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            found = json.loads((folder / "p.json").read_text())
+        coating = np.array([g.sum() for g in gains])
+        direct = coating.std() / coating.mean()
+        prediction = found["predictions"][0]
+        # The error of the directly drawn coefficient is about itself / sqrt(2 particles), 1.3 %.
+        error = np.hypot(prediction["coating_cov_error"], direct / np.sqrt(2 * particles))
+        self.assertLess(abs(prediction["coating_cov"] - direct), 3 * error, (prediction, direct))
+        self.assertLess(prediction["coating_cov_error"], 0.1 * direct)  # an error bar that says something
+        error = np.hypot(prediction["coating_mean_error"], coating.std() / np.sqrt(particles))
+        self.assertLess(abs(prediction["coating_mean"] - coating.mean()), 3 * error)
+        return found["basis"], prediction
+
+    def test_regular_cycles(self):
+        # Gamma with shape 4: var tau = 0.25; exponential gain: var g / mean^2 = 1. By hand sqrt((1 + 0.25) / 40) = 0.177.
+        basis, prediction = self.check(4, 1, 1)
+        self.assertAlmostEqual(basis["mean_cycle_time"], 1, delta=0.03)
+        self.assertAlmostEqual(basis["sd_cycle_time"], 0.5, delta=0.05)
+        self.assertAlmostEqual(prediction["coating_cov"], 0.177, delta=0.01)
+
+    def test_long_cycles_are_censored(self):
+        # Shape 0.5: var tau = 2, and 4 s see only the shorter part of the long cycles.
+        basis, prediction = self.check(0.5, 1, 2)
+        self.assertAlmostEqual(basis["sd_cycle_time"], np.sqrt(2), delta=0.25)
+        self.assertAlmostEqual(prediction["coating_cov"], np.sqrt(3 / 40), delta=0.03)
+
+    def test_size_classes_add_their_own(self):
+        # Two classes with rates 0.75 and 1.25: a quarter, whatever the time.
+        basis, prediction = self.check(4, 2, 3)
+        self.assertAlmostEqual(basis["variation_of_size_classes"], 0.25, delta=0.03)
+        self.assertGreater(prediction["coating_cov"], 0.29)
+
+    def test_messages(self):
+        with tempfile.TemporaryDirectory() as name:
+            done = run(pathlib.Path(name), "--time", 10)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn("not there; allowed", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,192 @@
+#!/usr/bin/python3
+"""Coating at the end of a batch from seconds of it: mean and coefficient of variation at given times, by renewal theory.
+
+Particles pass a zone again and again; each cycle takes a time tau and brings a gain g, and cycles of one particle are taken
+as independent. For a renewal reward process (Cox 1962, Renewal Theory, section 8; Smith 1955, Proc. R. Soc. Edinb. A 64, 9)
+the coating M(t) has, for t well over a cycle,
+
+    mean M = r t,  r = mean(g) / mean(tau)
+    var M = t / mean(tau) (var g + r^2 var tau - 2 r cov(g, tau))
+
+What a short run measures of this is censored: long cycles do not end in it. Mean(tau) is therefore particles x time /
+entries, which needs no cycle to end; var tau comes from the Kaplan-Meier estimate of the distribution (Kaplan & Meier 1958,
+J. Am. Stat. Assoc. 53, 457) of ended and open cycles, with an exponential tail that gives the same mean. The rate r is the
+mass of all coatings over the time. With size classes, the classes' different rates add to the variation.
+
+The error is a jackknife over the groups of particles that zones/NAME_groups.csv has.
+"""
+
+import argparse
+import csv
+import json
+import math
+import pathlib
+import sys
+
+
+def read_last(path):
+    """Rows of the last time in a table, as dictionaries of numbers by the columns' bare names."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    names = [name.split(" [")[0] for name in rows[0]]
+    table = [dict(zip(names, map(float, row))) for row in rows[1:]]
+    if not table:
+        sys.exit(f"{path}: it has no rows yet; let the run go on to the zone's first `every`")
+    last = table[-1]["time"]
+    return [row for row in table if row["time"] == last]
+
+
+def survival(times):
+    """Kaplan-Meier on bins: upper ends of the bins and the share of cycles that are longer. An open cycle is at risk for
+    half of the bin that it is in."""
+    at_risk = sum(row["cycles"] + row["open_cycles"] for row in times)
+    share, ends, shares = 1.0, [], []
+    for row in times:
+        if math.isinf(row["to"]):
+            break
+        exposed = at_risk - 0.5 * row["open_cycles"]
+        if exposed > 0:
+            share *= max(0.0, 1 - row["cycles"] / exposed)
+        at_risk -= row["cycles"] + row["open_cycles"]
+        ends.append(row["to"])
+        shares.append(share)
+        if at_risk <= 0:
+            break
+    return ends, shares
+
+
+def cycle_variance(times, mean):
+    """Variance of the cycle time, its mean being known, and the share of cycles beyond the distribution's end."""
+    ends, shares = survival(times)
+    first = second = 0.0  # integrals of S and of 2 tau S, S linear in a bin
+    low, before = 0.0, 1.0
+    for high, after in zip(ends, shares):
+        width = high - low
+        first += width * 0.5 * (before + after)
+        second += width * (low * (before + after) + width * (before + 2 * after) / 3)
+        low, before = high, after
+    tail = shares[-1]
+    if tail > 0:
+        # S = tail exp(-(tau - low) / scale), with the scale that gives the mean. Mass that the mean does not leave room
+        # for is cut off.
+        scale = max(0.0, (mean - first) / tail)
+        second += 2 * tail * scale * (low + scale)
+        first += tail * scale
+    return max(0.0, second - 2 * first * mean + mean * mean), tail
+
+
+def add(rows):
+    total = {}
+    for row in rows:
+        for name, value in row.items():
+            total[name] = total.get(name, 0.0) + value
+    return total
+
+
+def moments(sums, time):
+    """Of cycles from sums over particles; `steady` needs none to have ended."""
+    n = sums["cycles"]
+    if n < 2 or sums["entries"] < 1 or sums["coating"] <= 0:
+        return None
+    mean_time, mean_gain = sums["cycle_time"] / n, sums["gain"] / n
+    return {
+        "steady": sums["particles"] * time / sums["entries"],
+        "rate": sums["coating"] / sums["particles"] / time,
+        "time_variance": max(0.0, (sums["cycle_time_squared"] - n * mean_time**2) / (n - 1)),
+        "gain_variance": max(0.0, (sums["gain_squared"] - n * mean_gain**2) / (n - 1)),
+        "covariance": (sums["time_gain"] - n * mean_time * mean_gain) / (n - 1),
+    }
+
+
+def variation_of_classes(rows):
+    """Coefficient of variation of the rates of the size classes, less what the scatter within them adds."""
+    classes = {}
+    for row in rows:
+        classes.setdefault(row["size_class"], []).append(row)
+    if len(classes) < 2:
+        return 0.0
+    total = add(rows)
+    mean = total["coating"] / total["particles"]
+    variance = 0.0
+    for members in classes.values():
+        part = add(members)
+        if part["particles"] < 2:
+            continue
+        own = part["coating"] / part["particles"]
+        scatter = max(0.0, part["coating_squared"] / part["particles"] - own**2) / part["particles"]
+        variance += part["particles"] / total["particles"] * ((own - mean) ** 2 - scatter)
+    return math.sqrt(max(0.0, variance)) / mean
+
+
+def predict(groups, times, at):
+    """Mean [kg] and coefficient of variation of the coating at the times `at`, and what they are made of."""
+    time = groups[0]["time"]
+    every = moments(add(groups), time)
+    if every is None:
+        sys.exit("fewer than two cycles have ended, or nothing is coated yet: a longer run is needed")
+    spread, open_share = cycle_variance(times, every["steady"])
+    # Correlation as of the ended cycles, with the variance that the long ones have too.
+    widening = spread / every["time_variance"] if every["time_variance"] > 0 else 1.0
+
+    def figures(rows):
+        m = moments(add(rows), time)
+        if m is None:
+            return None
+        r = m["rate"]
+        one = (m["gain_variance"] + r * r * widening * m["time_variance"]
+               - 2 * r * math.sqrt(widening) * m["covariance"])
+        classes = variation_of_classes(rows)
+        result = []
+        for t in at:
+            own = max(0.0, one) * t / m["steady"]
+            result.append((r * t, math.sqrt(own + (classes * r * t) ** 2) / (r * t)))
+        return result
+
+    whole = figures(groups)
+    names = sorted({row["group"] for row in groups})
+    without = [figures([row for row in groups if row["group"] != name]) for name in names]
+    without = [part for part in without if part is not None]
+    predictions = []
+    for n, t in enumerate(at):
+        errors = []
+        for k in (0, 1):
+            values = [part[n][k] for part in without]
+            mean = sum(values) / len(values)
+            errors.append(math.sqrt((len(values) - 1) / len(values) * sum((v - mean) ** 2 for v in values)))
+        predictions.append({"time": t, "coating_mean": whole[n][0], "coating_mean_error": errors[0],
+                            "coating_cov": whole[n][1], "coating_cov_error": errors[1]})
+    basis = {"measured_time": time, "mean_cycle_time": every["steady"], "sd_cycle_time": math.sqrt(spread),
+             "cycles_beyond_distribution": open_share, "mean_gain": every["rate"] * every["steady"],
+             "sd_gain": math.sqrt(every["gain_variance"]), "variation_of_size_classes": variation_of_classes(groups)}
+    return basis, predictions
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", type=pathlib.Path, help="results folder of a run with the zone")
+    parser.add_argument("zone", help="name of the zone: output.zones")
+    parser.add_argument("--time", type=float, nargs="+", required=True, help="batch times [s]")
+    parser.add_argument("--json", type=pathlib.Path, help="write the figures to this file too")
+    arguments = parser.parse_args()
+    groups_file = arguments.results / "zones" / f"{arguments.zone}_groups.csv"
+    times_file = arguments.results / "histograms" / f"{arguments.zone}_times.csv"
+    for path in (groups_file, times_file):
+        if not path.is_file():
+            sys.exit(f"{path}: not there; allowed: the results of a run whose case has the zone {arguments.zone}")
+    basis, predictions = predict(read_last(groups_file), read_last(times_file), arguments.time)
+    print(f"measured over {basis['measured_time']:g} s: cycle time {basis['mean_cycle_time']:.4g} s "
+          f"(standard deviation {basis['sd_cycle_time']:.4g} s), gain {basis['mean_gain']:.4g} kg a cycle "
+          f"(standard deviation {basis['sd_gain']:.4g} kg)")
+    if basis["cycles_beyond_distribution"] > 0.2:
+        print(f"{100 * basis['cycles_beyond_distribution']:.0f} % of the cycles are longer than what was seen: their "
+              "spread is a guess; a longer run would tell")
+    print("time [s]  coating of a particle [kg]        coefficient of variation")
+    for p in predictions:
+        print(f"{p['time']:8g}  {p['coating_mean']:.4g} +- {p['coating_mean_error']:.2g}        "
+              f"{p['coating_cov']:.4f} +- {p['coating_cov_error']:.2g}")
+    if arguments.json:
+        arguments.json.write_text(json.dumps({"basis": basis, "predictions": predictions}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
