@@ -94,9 +94,8 @@ inline constexpr Index zone_groups = 16;
 /// Distributions so far; the last bin holds what is longer than all others.
 struct ZoneHistograms {
   std::vector<std::int64_t> cycle_time;  ///< of cycles that have ended
-  std::vector<std::int64_t>
-      open_cycle;  ///< since the last entry, of particles that have entered
-  std::vector<std::int64_t> residence;  ///< of visits that have ended
+  std::vector<std::int64_t> open_cycle;  ///< since the last entry, of particles that have entered
+  std::vector<std::int64_t> residence;   ///< of visits that have ended
 };
 
 /// Visits of all particles to one zone; follows them through memory (dem::Engine::attach). A particle that is in the zone

@@ -149,7 +149,7 @@ void describe_histogram(Keys& keys, HistogramSpec& histogram) {
   if (histogram.against_min && histogram.against_max && !(*histogram.against_max > *histogram.against_min)) {
     keys.problem("against_max", "it is not above against_min; a larger number");
   }
-  for (const char* key : {"against_bins", "against_min", "against_max"}) {
+  for (const char* key : {"against_min", "against_max"}) {
     if (keys.given(key) && !histogram.against)
       keys.problem(key, "there is no second quantity; against as well");
   }
