@@ -130,7 +130,7 @@ void ZoneOutputs::sample(const OutputState& state, bool last) {
     const Real width = 2 * (largest - smallest) / zone.options().size_classes;
     for (Index c = 0; c < zone.options().size_classes; ++c) {
       for (Index g = 0; g < zone_groups; ++g) {
-        const ZoneSums& s = sums[static_cast<std::size_t>(c * zone_groups + g)];
+        const ZoneSums& s = sums[static_cast<std::size_t>(c) * zone_groups + static_cast<std::size_t>(g)];
         series.groups.append(std::array<double, 16>{
             state.time, static_cast<double>(c), 2 * smallest + width * c, 2 * smallest + width * (c + 1),
             static_cast<double>(g), s.particles, s.entered, s.entries, s.cycles, s.cycle_time,
