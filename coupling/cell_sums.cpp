@@ -46,6 +46,20 @@ struct Scatter {
   }
 };
 
+/// Shell sort: linear on the nearly sorted runs that come from particles in spatial order, and bearable on any other.
+KOKKOS_INLINE_FUNCTION void sort_keys(const DeviceArray<std::uint64_t>& sorted, Index first, Index last) {
+  Index gap = 1;
+  while (gap < (last - first) / 9) gap = 3 * gap + 1;
+  for (; gap > 0; gap /= 3) {
+    for (Index i = first + gap; i < last; ++i) {
+      const std::uint64_t key = sorted(i);
+      Index j = i;
+      for (; j >= first + gap && sorted(j - gap) > key; j -= gap) sorted(j) = sorted(j - gap);
+      sorted(j) = key;
+    }
+  }
+}
+
 struct SortAndSum {
   DeviceArray<Index> begin;
   DeviceArray<std::uint64_t> sorted;
@@ -54,7 +68,7 @@ struct SortAndSum {
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index c) const {
     const Index first = begin(c), last = begin(c + 1);
-    sort(first, last);
+    sort_keys(sorted, first, last);
     CellLoad sum;
     for (Index e = first; e < last; ++e) {
       const std::uint64_t key = sorted(e);
@@ -62,19 +76,13 @@ struct SortAndSum {
     }
     result(c) = sum;
   }
+};
 
-  /// Shell sort: linear on the nearly sorted runs that come from particles in spatial order, and bearable on any other.
-  KOKKOS_INLINE_FUNCTION void sort(Index first, Index last) const {
-    Index gap = 1;
-    while (gap < (last - first) / 9) gap = 3 * gap + 1;
-    for (; gap > 0; gap /= 3) {
-      for (Index i = first + gap; i < last; ++i) {
-        const std::uint64_t key = sorted(i);
-        Index j = i;
-        for (; j >= first + gap && sorted(j - gap) > key; j -= gap) sorted(j) = sorted(j - gap);
-        sorted(j) = key;
-      }
-    }
+struct SortCells {
+  DeviceArray<Index> begin;
+  DeviceArray<std::uint64_t> sorted;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index c) const {
+    sort_keys(sorted, begin(c), begin(c + 1));
   }
 };
 
@@ -86,8 +94,8 @@ CellSums::CellSums(Index cells) : cells_(cells) {
   cursor_ = DeviceArray<Index>("coupling::cell_sums::cursor", size);
 }
 
-void CellSums::compute(const Footprint& footprint, const DeviceArray<CellLoad>& load,
-                       const DeviceArray<CellLoad>& result) {
+/// Entries to their cells, in any order within a cell.
+void CellSums::distribute(const Footprint& footprint) {
   const FootprintView& view = footprint.view();
   if (sorted_.extent(0) < view.entries.extent(0)) {
     sorted_ = DeviceArray<std::uint64_t>(
@@ -102,8 +110,18 @@ void CellSums::compute(const Footprint& footprint, const DeviceArray<CellLoad>& 
                         ScanCells{begin_, cursor_, cells_});
   Kokkos::parallel_for("coupling::cell_sums::scatter", DeviceRange(0, footprint.particle_count()),
                        Scatter{view, cursor_, sorted_});
+}
+
+void CellSums::compute(const Footprint& footprint, const DeviceArray<CellLoad>& load,
+                       const DeviceArray<CellLoad>& result) {
+  distribute(footprint);
   Kokkos::parallel_for("coupling::cell_sums::sort_and_sum", DeviceRange(0, cells_),
-                       SortAndSum{begin_, sorted_, load, result, view.share});
+                       SortAndSum{begin_, sorted_, load, result, share_});
+}
+
+void CellSums::sort(const Footprint& footprint) {
+  distribute(footprint);
+  Kokkos::parallel_for("coupling::cell_sums::sort", DeviceRange(0, cells_), SortCells{begin_, sorted_});
 }
 
 }  // namespace pellicle::coupling

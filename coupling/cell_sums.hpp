@@ -26,6 +26,20 @@ struct alignas(64) CellLoad {
   }
 };
 
+/// Entries of a footprint by cell, in the order of their particles: those of a cell are begin(cell) to
+/// begin(cell + 1) - 1.
+struct CellRows {
+  DeviceArray<Index> begin;
+  DeviceArray<std::uint64_t> keys;  ///< particle in the upper half, pieces in the lower one
+  Real share = 1;                   ///< of a piece in its particle
+
+  KOKKOS_INLINE_FUNCTION Index particle(Index entry) const { return static_cast<Index>(keys(entry) >> 32); }
+  /// Of the particle, in the cell.
+  KOKKOS_INLINE_FUNCTION Real share_of(Index entry) const {
+    return share * static_cast<Real>(keys(entry) & 0xffffffffU);
+  }
+};
+
 /// Sum over the entries of a cell, in their order: particle in the upper half of a key, pieces in the lower one.
 template <class Load>
 struct SumOverCell {
@@ -53,6 +67,11 @@ class CellSums {
   void compute(const Footprint& footprint, const DeviceArray<CellLoad>& load,
                const DeviceArray<CellLoad>& result);
 
+  /// Only the order, for `sum` and `rows`.
+  void sort(const Footprint& footprint);
+  /// Which particles lie in each cell, and with how many of their pieces, as of the last `compute` or `sort`.
+  CellRows rows() const { return {begin_, sorted_, share_}; }
+
   /// The same for another load over the footprint of the last `compute`, whose order is used again. Load needs a
   /// default of zero, += and Real x Load.
   template <class Load>
@@ -62,6 +81,8 @@ class CellSums {
   }
 
  private:
+  void distribute(const Footprint& footprint);
+
   Index cells_ = 0;
   DeviceArray<Index> begin_;   // of each cell in sorted_, cells + 1
   DeviceArray<Index> cursor_;  // next free place of each cell while sorting

@@ -79,6 +79,10 @@ class MomentumExchange {
   /// cells, the order that the sums were done in.
   const Footprint& transfer_footprint() const { return transfer_footprint_; }
   const CellSums& cell_sums() const { return sums_; }
+  /// Which gas cells each particle covers, as of the last deposit; one with the transfer footprint if both grids have
+  /// the same cells.
+  const Footprint& gas_footprint() const { return one_grid_ ? transfer_footprint_ : gas_footprint_; }
+  bool has_one_grid() const { return one_grid_; }
   /// Gas velocity of the gas grid's cells as sampled last [m/s].
   const DeviceArray<Vec3>& gas_velocity() const { return gas_velocity_; }
   /// The gas grid on the device.

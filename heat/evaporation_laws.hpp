@@ -59,8 +59,9 @@ struct alignas(64) ParticleResponse {
   Real heat_0, heat_warmth, heat_vapour;
   Real evaporation_0, evaporation_warmth, evaporation_vapour;
   Real conductance;  ///< H [W/K]; 0: the particle is out of it
-  Real limited;      ///< 1: what evaporates is all the liquid there is, whatever the gas; else 0
+  Real slope;        ///< of the line in place of w* [1/K]; negative: what evaporates is given
 
+  KOKKOS_INLINE_FUNCTION bool is_given() const { return slope < 0; }
   KOKKOS_INLINE_FUNCTION Real heat(Real warmth, Real vapour) const {
     return heat_0 + heat_warmth * warmth + heat_vapour * vapour;
   }
@@ -88,7 +89,7 @@ KOKKOS_INLINE_FUNCTION ParticleResponse limited_response(const ParticleHeat& p, 
           0,
           0,
           heat_conductance,
-          1};
+          -1};
 }
 
 /// As much evaporates or condenses as the straight line through w* at the start, of slope s [1/K], says.
@@ -107,7 +108,7 @@ KOKKOS_INLINE_FUNCTION ParticleResponse wet_response(const ParticleHeat& p, cons
           evaporation_warmth,
           evaporation_vapour,
           k.heat,
-          0};
+          surface.slope};
 }
 
 /// Slope of w* for wet_response: of the chord from the start to the particle's end of the step in gas of this warmth and
