@@ -81,9 +81,7 @@ struct SortAndSum {
 struct SortCells {
   DeviceArray<Index> begin;
   DeviceArray<std::uint64_t> sorted;
-  KOKKOS_INLINE_FUNCTION void operator()(const Index c) const {
-    sort_keys(sorted, begin(c), begin(c + 1));
-  }
+  KOKKOS_INLINE_FUNCTION void operator()(const Index c) const { sort_keys(sorted, begin(c), begin(c + 1)); }
 };
 
 }  // namespace

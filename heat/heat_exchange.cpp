@@ -69,9 +69,8 @@ struct Surroundings {
   KOKKOS_INLINE_FUNCTION Conductances conductances(Index p, const CellGas& g, Real surface) const {
     constexpr Real pi = 3.14159265358979323846;
     const Real diameter = 2 * view.particles.position_radius(p).radius;
-    const Real viscosity = properties.sutherland
-                               ? cfd::sutherland_viscosity(view.water.reference + g.warmth)
-                               : properties.viscosity;
+    const Real viscosity = properties.sutherland ? cfd::sutherland_viscosity(view.water.reference + g.warmth)
+                                                 : properties.viscosity;
     const coupling::SampledGas flow = sampled(p);
     const Real slip = norm(flow.velocity - view.particles.velocity_spin(p).velocity());
     const Real capacity = properties.capacity * (1 - g.vapour) + view.water.vapour_capacity * g.vapour;
@@ -110,8 +109,7 @@ struct Respond {
       return;
     }
     const ParticleHeat held = around.losing(p, k.vapour * (surface - g.vapour));
-    const ValueAndSlope line =
-        find_chord(around.saturation, held, k, water, g.warmth, g.vapour, around.step);
+    const ValueAndSlope line = find_chord(around.saturation, held, k, water, g.warmth, g.vapour, around.step);
     response(p) = wet_response(held, k, line, water.evaporation(temperature), around.step);
   }
 };
@@ -246,8 +244,8 @@ struct FinishParticles {
     const Exchanged got = exchanged_by(p, r, footprint, end);
     const ParticleHeat held = view.heat(p);
     const Real evaporated = step * got.evaporation;
-    const Real enthalpy =
-        held.capacity * held.warmth + step * got.heat - evaporated * view.water.vapour(view.water.reference + held.warmth);
+    const Real enthalpy = held.capacity * held.warmth + step * got.heat -
+                          evaporated * view.water.vapour(view.water.reference + held.warmth);
     Film film = view.film(p);
     // All of it if all was to evaporate, without what rounding would leave.
     film.liquid = r.is_given() && evaporated > 0 ? Real(0) : Kokkos::fmax(film.liquid - evaporated, Real(0));
@@ -309,9 +307,9 @@ void HeatExchange::update(const dem::Particles& particles, const coupling::Momen
   copy_gas(gas);
   const coupling::CellRows rows = find_rows(exchange);
   const coupling::FootprintView& footprint = exchange.gas_footprint().view();
-  const ParticleView view{particles,           surface.temperature(),
-                          surface.film(),      surface.heat_capacity(),
-                          surface.capacities(), options_.water};
+  const ParticleView view{
+      particles,     surface.temperature(), surface.film(), surface.heat_capacity(), surface.capacities(),
+      options_.water};
   const DeviceRange all(0, particles.count), cells(0, cells_);
   const Surroundings around{view,
                             footprint,
@@ -334,9 +332,9 @@ void HeatExchange::update(const dem::Particles& particles, const coupling::Momen
     if (!options_.evaporation) continue;
     Kokkos::parallel_reduce("heat::heat_exchange::review", all, Review{around, end_, response_}, changed);
   }
-  Kokkos::parallel_for("heat::heat_exchange::sum_gains", cells,
-                       SumGains{rows, response_, end_, surface.temperature(), particles.velocity_spin,
-                                options_.water, gain_});
+  Kokkos::parallel_for(
+      "heat::heat_exchange::sum_gains", cells,
+      SumGains{rows, response_, end_, surface.temperature(), particles.velocity_spin, options_.water, gain_});
   Index broken = 0;
   Kokkos::parallel_reduce("heat::heat_exchange::finish_particles", all,
                           FinishParticles{view, footprint, end_, response_, step}, broken);

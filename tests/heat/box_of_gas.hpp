@@ -100,9 +100,7 @@ class BoxOfGas {
     }
   }
 
-  Real capacity(Real w) const {
-    return options_.gas.capacity * (1 - w) + options_.water.vapour_capacity * w;
-  }
+  Real capacity(Real w) const { return options_.gas.capacity * (1 - w) + options_.water.vapour_capacity * w; }
   Real gas_mass(Index c) const { return gas_.density(c) * gas_.void_fraction(c) * volume_(c); }
   Real water_mass() const {
     Real sum = surface_.compute_totals().film.liquid;
@@ -117,9 +115,7 @@ class BoxOfGas {
     }
     return sum;
   }
-  std::vector<Real> temperatures() const {
-    return coupling_vector(surface_.temperature());
-  }
+  std::vector<Real> temperatures() const { return coupling_vector(surface_.temperature()); }
   std::vector<Film> films() const { return coupling_vector(surface_.film()); }
   Real temperature(std::size_t p = 0) const { return temperatures()[p]; }
   Film film(std::size_t p = 0) const { return films()[p]; }
