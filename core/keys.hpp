@@ -121,6 +121,7 @@ class Keys {
   void flag(const Key& key, bool& value) {
     pass(value, [&](auto& v) { visit_flag(key, v); });
   }
+  void flag(const Key& key, std::optional<bool>& value) { visit_flag(key, value); }
   void text(const Key& key, TextRule rule, std::optional<std::string>& value) {
     visit_text(key, rule, value);
   }

@@ -36,6 +36,7 @@ inline constexpr Dimension surface_tension{"a surface tension", "N/m", "72 mN/m"
 inline constexpr Dimension stiffness{"a stiffness", "N/m", "1 kN/m"};
 inline constexpr Dimension force_per_volume{"a force per volume", "N/m3", "5 N/m3"};
 inline constexpr Dimension temperature{"a temperature", "K", "80 degC"};
+inline constexpr Dimension specific_energy{"an energy per mass", "J/kg", "2442 kJ/kg"};
 inline constexpr Dimension heat_capacity{"a heat capacity", "J/kg/K", "1 kJ/kg/K"};
 inline constexpr Dimension heat_conductivity{"a heat conductivity", "W/m/K", "26 mW/m/K"};
 inline constexpr Dimension turbulent_energy{"a kinetic energy per mass", "m2/s2", "0.5 m2/s2"};

@@ -32,6 +32,16 @@ struct SumSurface {
   }
 };
 
+struct Begin {
+  Newcomer newcomer;
+  DeviceArray<Real> mass, temperature;
+  DeviceArray<Film> film;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
+    temperature(p) = newcomer.temperature;
+    film(p) = {newcomer.film_share.liquid * mass(p), newcomer.film_share.solids * mass(p)};
+  }
+};
+
 }  // namespace
 
 SurfaceState::SurfaceState(const dem::Particles& particles, const std::vector<Real>& heat_capacity,
@@ -40,7 +50,8 @@ SurfaceState::SurfaceState(const dem::Particles& particles, const std::vector<Re
       heat_capacity_("heat::surface_state::heat_capacity", heat_capacity.size()),
       capacities_(capacities),
       temperature_("heat::surface_state::temperature", "heat/temperature", initial_temperature),
-      film_("heat::surface_state::film", "heat/film") {
+      film_("heat::surface_state::film", "heat/film"),
+      newcomer_{initial_temperature, {}} {
   const auto host = Kokkos::create_mirror_view(heat_capacity_);
   std::copy(heat_capacity.begin(), heat_capacity.end(), host.data());
   Kokkos::deep_copy(heat_capacity_, host);
@@ -89,6 +100,8 @@ void SurfaceState::reset(Index count) {
 void SurfaceState::add(Index first, Index count) {
   temperature_.add(first, count);
   film_.add(first, count);
+  Kokkos::parallel_for("heat::surface_state::begin", DeviceRange(first, first + count),
+                       Begin{newcomer_, particles_.mass, temperature(), film()});
   entered_ += sum(first, first + count);
 }
 

@@ -42,6 +42,12 @@ struct SurfaceTotals {
   }
 };
 
+/// What a fed particle begins with.
+struct Newcomer {
+  Real temperature = 0;  ///< [K]
+  Film film_share{};     ///< of the particle's mass
+};
+
 /// Temperature and film of all particles; follows them through memory (dem::Engine::attach).
 class SurfaceState final : public dem::Companion {
  public:
@@ -56,6 +62,9 @@ class SurfaceState final : public dem::Companion {
 
   /// Temperature [K] and film [kg] of every particle by its id; to be called after the particles were set.
   void set_by_id(const std::vector<Real>& temperature, const std::vector<Film>& film);
+
+  /// What particles that are added from here on begin with; until the first call, the initial temperature and no film.
+  void expect(const Newcomer& newcomer) { newcomer_ = newcomer; }
 
   SurfaceTotals compute_totals() const;
   /// What particles that left, and those that were fed, took along and brought, since the start.
@@ -79,6 +88,7 @@ class SurfaceState final : public dem::Companion {
   HeatCapacities capacities_;
   dem::FollowingArray<Real> temperature_;
   dem::FollowingArray<Film> film_;
+  Newcomer newcomer_;
   SurfaceTotals left_, entered_;
 };
 

@@ -159,6 +159,7 @@ TEST(HeatExchange, ClosedBoxReachesItsEquilibrium) {
                              Start{330, 300, 0.01, 1e-7}, Start{285, 340, 0.08, 0}}) {
     for (const Real dt : {2e-2, 5.0}) {
       std::vector<Grain> grains;
+      grains.reserve(8);
       for (int i = 0; i < 8; ++i) {
         grains.push_back({{0.005 + 0.01 * (i & 1), 0.005 + 0.005 * (i & 2), 0.005 + 0.0025 * (i & 4)},
                           0.5e-3 + 0.1e-3 * i,
@@ -200,6 +201,7 @@ TEST(HeatExchange, StaysWithinBoundsWhateverTheStep) {
         options.nusselt = Gunn{};
         options.stefan_flow = stefan;
         std::vector<Grain> grains;
+        grains.reserve(200);
         for (int p = 0; p < 200; ++p) {
           const Vec3 place{0.012 * unit(generator), 0.012 * unit(generator), 0.012 * unit(generator)};
           const Real liquid = p % 3 == 0 ? 0 : std::pow(10, -13 + 6 * unit(generator));

@@ -515,6 +515,9 @@ class Checker {
 
 }  // namespace
 
-void check_case(CaseSpec& spec, core::InputProblems& problems) { Checker(spec, problems).check_all(); }
+void check_case(CaseSpec& spec, core::InputProblems& problems) {
+  Checker(spec, problems).check_all();
+  check_heat(spec, problems);
+}
 
 }  // namespace pellicle::tools

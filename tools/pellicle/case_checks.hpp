@@ -13,6 +13,9 @@ namespace pellicle::tools {
 /// `spec.warnings`.
 void check_case(CaseSpec& spec, core::InputProblems& problems);
 
+/// What heat and films of the particles need of the rest of the case; a part of check_case.
+void check_heat(const CaseSpec& spec, core::InputProblems& problems);
+
 /// Whether particles of one material can touch particles or a wall of the other.
 bool can_meet(const CaseSpec& spec, int material_a, int material_b);
 

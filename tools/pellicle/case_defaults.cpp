@@ -88,6 +88,14 @@ bool make_refined(CaseSpec& spec, core::InputProblems& problems) {
   }
 }
 
+void fill_in_heat(CaseSpec& spec) {
+  HeatSpec& heat = *spec.heat;
+  if (!heat.evaporation) heat.evaporation = spec.gas && spec.gas->moisture;
+  if (!heat.initial_temperature && spec.gas && spec.gas->heat) {
+    heat.initial_temperature = spec.gas->heat->initial_temperature;
+  }
+}
+
 /// All that a probe can show, without what the gas does not carry.
 std::vector<std::string> all_quantities(const CaseSpec& spec, const ProbeSpec& probe) {
   std::vector<std::string> names;
@@ -112,6 +120,7 @@ void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
     if (spec.contacts.linear->speed == 0) spec.contacts.linear->speed = spec.time.impact_speed;
   }
   count_fills(spec, problems);
+  if (spec.heat) fill_in_heat(spec);
   if (spec.gas && !make_refined(spec, problems)) return;
   if (spec.gas && spec.coupling.transfer_grid.cells.x == 0) {
     spec.coupling.transfer_grid = spec.gas->grid;

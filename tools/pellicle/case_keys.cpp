@@ -156,6 +156,7 @@ void describe_case(Keys& keys, CaseSpec& spec) {
   describe_particles(keys, spec);
   describe_gas(keys, spec);
   describe_coupling(keys, spec);
+  describe_heat_and_films(keys, spec);
   describe_output(keys, spec);
 }
 

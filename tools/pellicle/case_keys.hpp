@@ -17,6 +17,8 @@ void describe_contacts(core::Keys& keys, CaseSpec& spec);
 void describe_particles(core::Keys& keys, CaseSpec& spec);
 void describe_gas(core::Keys& keys, CaseSpec& spec);
 void describe_coupling(core::Keys& keys, CaseSpec& spec);
+/// Of the particles, and their films.
+void describe_heat_and_films(core::Keys& keys, CaseSpec& spec);
 void describe_output(core::Keys& keys, CaseSpec& spec);
 
 // Pieces that several parts use.

@@ -28,6 +28,8 @@ void describe_material(Keys& keys, MaterialSpec& material) {
             {dimension::pressure, range::positive}, material.true_youngs_modulus);
   keys.real({"poisson_ratio", "of the solid", Need::required},
             {dimension::pure_number, {.min = 0, .max = 0.5}}, material.poisson_ratio);
+  keys.real({"heat_capacity", "of the solid; required of particles with heat"},
+            {dimension::heat_capacity, range::positive}, material.heat_capacity);
 }
 
 void describe_pair(Keys& keys, PairSpec& pair, CaseSpec& spec) {

@@ -61,6 +61,7 @@ struct MaterialSpec {
   Real youngs_modulus = 0;  ///< that contacts have [Pa]
   std::optional<Real> true_youngs_modulus{};  ///< of the real solid [Pa], to tell what softening saves
   Real poisson_ratio = 0;
+  std::optional<Real> heat_capacity{};  ///< [J/kg/K]; set where particles have a temperature
 };
 
 struct PairSpec {
@@ -155,6 +156,9 @@ struct PopulationSpec {
   Vec3 velocity;                   ///< initial, of a filled population; default of listed particles [m/s]
   Vec3 spin;                       ///< likewise [rad/s]
   bool fixed = false;              ///< likewise: never moves, but is felt by others and by the gas
+  std::optional<Real> initial_temperature;  ///< [K]; none: HeatSpec's
+  Real initial_liquid = 0;                  ///< mass of liquid on a particle over that of the particle
+  Real initial_solids = 0;                  ///< likewise of a dry coating
   std::optional<FillSpec> fill;
   std::vector<ListedParticleSpec> list;
   std::optional<FeedSpec> feed;
@@ -263,6 +267,25 @@ struct GasSpec {
   std::optional<Vec3> inside;  ///< a point in the gas, where walls divide the domain [m]
   GridSpec grid;
   std::vector<cfd::BoundaryPatch> boundaries;  ///< what none of them takes is a no-slip wall
+};
+
+/// Exchange of heat and vapour between gas and particles.
+struct HeatSpec {
+  std::string nusselt = "gunn";     ///< a name in the list of heat::TransferLaw
+  std::string sherwood = "gunn";    ///< likewise
+  std::string saturation = "buck";  ///< a name in the list of heat::SaturationLaw
+  std::optional<bool> evaporation;  ///< filled in: whether the gas carries moisture
+  bool stefan_flow = false;
+  Real latent_heat = 2.4417e6;                   ///< at the temperature below [J/kg]
+  Real latent_heat_temperature = 298.15;         ///< [K]
+  std::optional<Real> initial_temperature = {};  ///< of particles [K]; filled in: the gas's
+};
+
+/// What films on particles are made of. Defaults: water at 25 degC, and a polymer.
+struct CoatingSpec {
+  Real liquid_heat_capacity = 4181;  ///< [J/kg/K]
+  Real solids_density = 1250;        ///< of the dry coating [kg/m3]
+  Real solids_heat_capacity = 1300;  ///< [J/kg/K]
 };
 
 struct CouplingSpec {
@@ -377,6 +400,8 @@ struct CaseSpec {
   std::vector<WallSpec> walls;
   std::optional<GasSpec> gas;  ///< unset: pure DEM
   CouplingSpec coupling;       ///< of use only with both gas and particles
+  std::optional<HeatSpec> heat;
+  CoatingSpec coating;  ///< of use only where particles have films
   OutputSpec output;
   std::vector<std::string> warnings;  ///< each `file:line: key.path: ...`; the run goes on
   std::map<std::string, std::string>

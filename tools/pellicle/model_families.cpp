@@ -7,6 +7,7 @@
 #include "coupling/coupling_options.hpp"
 #include "dem/contact_laws.hpp"
 #include "dem/size_distribution.hpp"
+#include "heat/heat_options.hpp"
 #include "tools/pellicle/output_fields.hpp"
 
 namespace pellicle::tools {
@@ -55,6 +56,8 @@ constinit const core::ModelList rolling_models = core::model_list<dem::RollingLa
 constinit const core::ModelList cohesion_models = core::model_list<dem::CohesionLaw>();
 constinit const core::ModelList drag_laws = core::model_list<coupling::DragLaw>();
 constinit const core::ModelList depositions = core::model_list<coupling::Deposition>();
+constinit const core::ModelList transfer_laws = core::model_list<heat::TransferLaw>();
+constinit const core::ModelList saturation_laws = core::model_list<heat::SaturationLaw>();
 constinit const core::ModelList line_quantities = line_quantity_list;
 constinit const core::ModelList probe_quantities = probe_quantity_list;
 constinit const core::ModelList plane_probe_quantities = plane_probe_quantity_list;
@@ -75,6 +78,9 @@ const std::vector<ModelFamily>& model_families() {
       {"coupling.exchange", "Momentum exchange between gas and particles", coupling::exchange_models},
       {"coupling.coefficients", "How often momentum exchange coefficients are computed",
        coupling::coefficients_models},
+      {"heat.nusselt", "Heat transfer between gas and particles", transfer_laws},
+      {"heat.sherwood", "Transfer of vapour between gas and particles", transfer_laws},
+      {"heat.saturation", "Vapour pressure over water", saturation_laws},
   };
   return families;
 }

@@ -13,6 +13,7 @@
 #include "coupling/substeps.hpp"
 #include "tools/pellicle/build_case.hpp"
 #include "tools/pellicle/build_gas.hpp"
+#include "tools/pellicle/build_heat.hpp"
 
 namespace pellicle::tools {
 namespace {
@@ -21,10 +22,6 @@ using core::Conserved;
 using core::Part;
 
 volatile std::sig_atomic_t stop_requested = 0;
-
-/// What of the ledger the gas carries with it.
-constexpr std::pair<Conserved, cfd::Scalar> carried_by_gas[] = {{Conserved::energy, cfd::Scalar::temperature},
-                                                                {Conserved::water, cfd::Scalar::moisture}};
 
 }  // namespace
 
@@ -45,12 +42,14 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
     zones_ = make_zones(spec_, particles_->particles());
     for (spray::ZoneVisits& zone : zones_) particles_->attach(zone);
     feeds_ = make_feeds(spec_, particles_->setup());
+    if (spec_.heat) particles_->attach(surface_.emplace(make_surface(spec_, particles_->particles())));
   }
   if (spec_.gas) {
     gas_.emplace(make_gas_solver(spec_, particles_ ? particles_->setup().walls : make_walls(spec_)));
     no_particles_ = cfd::make_empty_exchange(gas_->grid());
   }
   if (particles_ && gas_) exchange_.emplace(make_exchange(spec_, *gas_));
+  if (spec_.heat) heat_.emplace(make_heat_options(spec_), gas_->geometry().volume);
   if (particles_) {
     for (const WallSpec& wall : spec_.walls) walls_.push_back({wall.name, {}, {}, 0});
     particles_->hold_walls();  // until t = 0
@@ -62,7 +61,11 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
 }
 
 void Simulation::start() {
-  if (particles_) particles_->set_particles(make_particles(spec_, particles_->setup().walls));
+  if (particles_) {
+    const std::vector<dem::ParticleSeed> seeds = make_particles(spec_, particles_->setup().walls);
+    particles_->set_particles(seeds);
+    if (surface_) set_initial_surface(spec_, seeds, *surface_);
+  }
   folder_.emplace(options_.output_folder,
                   options_.overwrite ? ResultsFolder::Existing::overwrite : ResultsFolder::Existing::refuse);
   folder_->write_case(options_.case_yaml_text);
@@ -85,6 +88,11 @@ void Simulation::resume() {
   for (std::size_t i = 0; i < feeds_.size(); ++i) feeds_[i].load(file, "feeds/" + std::to_string(i));
   if (gas_ && time_.step() >= 0) gas_->load(file);
   if (exchange_ && time_.step() >= 0) exchange_->load(file);
+  if (heat_ && time_.step() >= 0) {
+    heat_->load(file);
+    settled_left_surface_ = {{file.read_double("run/settled_left_liquid"), 0},
+                             file.read_double("run/settled_left_enthalpy")};
+  }
   ledger_.load(file);
   outputs_.emplace(spec_, *folder_, time_, gas_ ? &gas_->grid() : nullptr, time_.step());
   outputs_->load(file);
@@ -177,6 +185,7 @@ void Simulation::advance_outer_step() {
     sample_gas();
     move_particles(parts);
     deposit_particles(parts);
+    exchange_heat(parts);
     if (!time_.settling()) move_gas(parts);
   }
   watch_contacts();
@@ -210,8 +219,14 @@ void Simulation::watch_settling() {
 void Simulation::feed_particles() {
   if (time_.settling()) return;
   const core::Timers::Scope scope(timers_, Part::neighbours);
+  std::size_t population = 0;
   for (dem::Feed& feed : feeds_) {
+    while (!spec_.particles[population].feed) ++population;
+    const PopulationSpec& fed = spec_.particles[population++];
     if (!feed.is_due(time_.time())) continue;
+    if (surface_) {
+      surface_->expect({initial_temperature(spec_, fed), {fed.initial_liquid, fed.initial_solids}});
+    }
     particles_->add_particles(feed.draw(
         time_.time(), time_.step(), dem::spheres_near(*particles_, feed.reach()), particles_->wall_time()));
   }
@@ -255,12 +270,20 @@ void Simulation::deposit_particles(int parts) {
   if (exchange_->bound_report().cells_left_over > 0) ++crowded_steps_;
 }
 
+void Simulation::exchange_heat(int parts) {
+  if (!heat_ || !coupled()) return;
+  const core::Timers::Scope scope(timers_, Part::heat);
+  heat_->update(particles_->particles(), *exchange_, gas_->state(), *surface_, time_.gas_step() / parts);
+}
+
 void Simulation::move_gas(int parts) {
   if (!gas_) return;
   const Real dt = time_.gas_step() / parts;
   {
     const core::Timers::Scope scope(timers_, Part::gas);
-    summary_.gas.add(gas_->update(dt, exchange_ ? exchange_->exchange() : no_particles_), dt);
+    cfd::ParticleExchange felt = exchange_ ? exchange_->exchange() : no_particles_;
+    if (heat_) heat_->add_to(felt);
+    summary_.gas.add(gas_->update(dt, felt), dt);
   }
   if (!coupled()) return;
   const core::Timers::Scope scope(timers_, Part::coupling);
@@ -287,10 +310,9 @@ void Simulation::release_gas() {
     watch_zones();
   }
   if (gas_) ledger_.open(Conserved::gas_mass, gas_->balance().mass_initial);
-  for (const auto& [quantity, scalar] : carried_by_gas) {
-    if (const auto* balance = gas_ ? gas_->balance(scalar) : nullptr)
-      ledger_.open(quantity, balance->initial);
-  }
+  if (surface_) settled_left_surface_ = surface_->left();
+  if (gas_ && gas_->balance(cfd::Scalar::temperature)) ledger_.open(Conserved::energy, energy_stock());
+  if (gas_ && gas_->balance(cfd::Scalar::moisture)) ledger_.open(Conserved::water, water_stock());
   Vec3 momentum{};
   if (gas_) momentum += gas_->balance().momentum;
   if (particles_) momentum += particles_->compute_totals().momentum;
@@ -325,6 +347,51 @@ void Simulation::watch_contacts() {
   summary_.largest_impact_speed = std::max(summary_.largest_impact_speed, contacts_.largest_approach_speed);
 }
 
+/// Sensible heat of the gas, latent heat of its vapour, enthalpy of the particles with their films [J].
+Real Simulation::energy_stock() const {
+  Real stock = gas_->balance(cfd::Scalar::temperature)->stock;
+  if (!heat_) return stock;
+  if (const auto* vapour = gas_->balance(cfd::Scalar::moisture)) {
+    stock += heat_->options().water.latent * vapour->stock;
+  }
+  return stock + surface_->compute_totals().enthalpy;
+}
+
+/// Vapour in the gas, liquid on the particles [kg].
+Real Simulation::water_stock() const {
+  const Real vapour = gas_->balance(cfd::Scalar::moisture)->stock;
+  return surface_ ? vapour + surface_->compute_totals().film.liquid : vapour;
+}
+
+/// What gas and particles exchange with each other stays inside, unless the gas gives without losing: that is a source, by
+/// choice of the user.
+void Simulation::update_heat_ledger() {
+  const cfd::ScalarBalance* warmth = gas_->balance(cfd::Scalar::temperature);
+  const cfd::ScalarBalance* vapour = gas_->balance(cfd::Scalar::moisture);
+  const Real latent = heat_ ? heat_->options().water.latent : 0;
+  const bool one_way = heat_ && heat_->options().one_way;
+  const heat::HeatTotals given = one_way ? heat_->totals() : heat::HeatTotals{};
+  heat::SurfaceTotals in;
+  if (heat_) {
+    in += surface_->entered();
+    in.enthalpy -= surface_->left().enthalpy - settled_left_surface_.enthalpy;
+    in.film.liquid -= surface_->left().film.liquid - settled_left_surface_.film.liquid;
+  }
+  if (warmth) {
+    const Real through =
+        warmth->through_boundaries() + in.enthalpy + (vapour ? latent * vapour->through_boundaries() : 0);
+    ledger_.set_stock(Conserved::energy, energy_stock());
+    ledger_.set_totals(Conserved::energy, Vec3{through, 0, 0},
+                       Vec3{heat_ ? given.heat - latent * given.evaporated : warmth->sources, 0, 0},
+                       warmth->gross + (vapour ? latent * vapour->gross : 0));
+  }
+  if (vapour) {
+    ledger_.set_stock(Conserved::water, water_stock());
+    ledger_.set_totals(Conserved::water, Vec3{vapour->through_boundaries() + in.film.liquid, 0, 0},
+                       Vec3{heat_ ? -given.evaporated : vapour->sources, 0, 0}, vapour->gross);
+  }
+}
+
 /// Mass of the gas; momentum of gas, particles and what is still in transit between them. Through the boundaries goes
 /// what the gas exchanges with its boundaries and what walls give to particles; gravity is a source.
 void Simulation::update_ledger() {
@@ -337,13 +404,7 @@ void Simulation::update_ledger() {
     ledger_.set_stock(Conserved::gas_mass, gas.mass);
     ledger_.set_totals(Conserved::gas_mass, Vec3{gas.mass_in() - gas.mass_out(), 0, 0},
                        Vec3{gas.mass_given, 0, 0}, gas.mass_in() + gas.mass_out() + std::abs(gas.mass_given));
-    for (const auto& [quantity, scalar] : carried_by_gas) {
-      const cfd::ScalarBalance* carried = gas_->balance(scalar);
-      if (!carried) continue;
-      ledger_.set_stock(quantity, carried->stock);
-      ledger_.set_totals(quantity, Vec3{carried->through_boundaries(), 0, 0}, Vec3{carried->sources, 0, 0},
-                         carried->gross);
-    }
+    update_heat_ledger();
     stock += gas.momentum;
     through += gas.convected + gas.boundary_pressure + gas.boundary_shear;
     sources += gas.body_force + gas.vapour;
@@ -428,7 +489,15 @@ void Simulation::write_outputs(bool last) {
   outputs_->sample(state, last);
 }
 
-ParticleColumns Simulation::particle_columns() const { return particles_->particles(); }
+ParticleColumns Simulation::particle_columns() const {
+  ParticleColumns columns = particles_->particles();
+  if (surface_) {
+    columns.temperature = surface_->temperature();
+    columns.film = surface_->film();
+    columns.solids_density = spec_.coating.solids_density;
+  }
+  return columns;
+}
 
 void Simulation::write_checkpoint() {
   const core::Timers::Scope scope(timers_, Part::output);
@@ -444,6 +513,11 @@ void Simulation::write_checkpoint() {
   for (std::size_t i = 0; i < feeds_.size(); ++i) feeds_[i].save(file, "feeds/" + std::to_string(i));
   if (gas_ && time_.step() >= 0) gas_->save(file);
   if (exchange_ && time_.step() >= 0) exchange_->save(file);
+  if (heat_ && time_.step() >= 0) {
+    heat_->save(file);
+    file.write("run/settled_left_liquid", settled_left_surface_.film.liquid);
+    file.write("run/settled_left_enthalpy", settled_left_surface_.enthalpy);
+  }
   ledger_.save(file);
   outputs_->save(file);
   file.write("run/wall_impulse", wall_impulse_);

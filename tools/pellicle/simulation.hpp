@@ -15,6 +15,8 @@
 #include "coupling/momentum_exchange.hpp"
 #include "dem/engine.hpp"
 #include "dem/feed.hpp"
+#include "heat/heat_exchange.hpp"
+#include "heat/surface_state.hpp"
 #include "tools/pellicle/case_spec.hpp"
 #include "tools/pellicle/outputs.hpp"
 #include "tools/pellicle/results_folder.hpp"
@@ -51,14 +53,15 @@ class Simulation {
   void start();
   void resume();
 
-  // One outer step, in the order of docs/theory: particles enter, the gas is sampled, the particles move, they are deposited, the gas
-  // moves.
+  // One outer step, in the order of docs/theory: particles enter, the gas is sampled, the particles move, they are deposited, heat and
+  // vapour are exchanged, the gas moves.
   void advance_outer_step();
   void feed_particles();
   int choose_parts() const;
   void sample_gas();
   void move_particles(int parts);
   void deposit_particles(int parts);
+  void exchange_heat(int parts);
   void move_gas(int parts);
   void release_gas();
   void watch_settling();
@@ -67,6 +70,9 @@ class Simulation {
   void watch_contacts();
   void watch_zones();
   void update_ledger();
+  void update_heat_ledger();
+  Real energy_stock() const;
+  Real water_stock() const;
   void write_outputs(bool last = false);
   Real contacts_per_particle() const;
   ParticleColumns particle_columns() const;
@@ -81,11 +87,13 @@ class Simulation {
   core::TimeControl time_;
   std::optional<ResultsFolder> folder_;
 
+  std::optional<heat::SurfaceState> surface_;  // follows the particles, and outlives them
   std::optional<dem::Engine> particles_;
   std::vector<dem::Feed> feeds_;
   Zones zones_;
   std::optional<cfd::GasSolver> gas_;
   std::optional<coupling::MomentumExchange> exchange_;
+  std::optional<heat::HeatExchange> heat_;
   std::optional<Outputs> outputs_;
 
   core::Timers timers_;
@@ -94,17 +102,18 @@ class Simulation {
   std::int64_t crowded_steps_ = 0;  // in which the bound of the void fraction could not be kept
   std::int64_t crowded_walls_ = 0;  // times that a particle met more triangles than are compared
   Summary summary_;
-  cfd::ParticleExchange no_particles_;       // what a gas without particles feels
-  dem::ContactReport contacts_;              // of the last outer step
-  Vec3 wall_impulse_{}, support_impulse_{};  // since the start [N s]
-  std::vector<WallFigures> walls_;           // of each wall
-  Vec3 settled_gravity_{}, settled_wall_{};  // gravity and impulse_through_walls before t = 0 [N s]
-  Real settled_volume_time_ = 0;             // [m3 s]
-  std::int64_t quiet_steps_ = 0;             // since the particles moved faster than time.settle.speed
-  Real settled_left_mass_ = 0;               // [kg]
-  double made_ = core::wall_clock();         // when this process began to set up [s]
-  double wall_begin_ = 0, wall_before_ = 0;  // of this process, and of those before it [s]
-  double setup_before_ = 0;                  // of the processes before this one [s]
+  cfd::ParticleExchange no_particles_;        // what a gas without particles feels
+  dem::ContactReport contacts_;               // of the last outer step
+  Vec3 wall_impulse_{}, support_impulse_{};   // since the start [N s]
+  std::vector<WallFigures> walls_;            // of each wall
+  Vec3 settled_gravity_{}, settled_wall_{};   // gravity and impulse_through_walls before t = 0 [N s]
+  Real settled_volume_time_ = 0;              // [m3 s]
+  heat::SurfaceTotals settled_left_surface_;  // what left with particles before t = 0
+  std::int64_t quiet_steps_ = 0;              // since the particles moved faster than time.settle.speed
+  Real settled_left_mass_ = 0;                // [kg]
+  double made_ = core::wall_clock();          // when this process began to set up [s]
+  double wall_begin_ = 0, wall_before_ = 0;   // of this process, and of those before it [s]
+  double setup_before_ = 0;                   // of the processes before this one [s]
 };
 
 }  // namespace pellicle::tools

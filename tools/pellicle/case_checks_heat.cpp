@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/pellicle/case_checks.hpp"
+
+namespace pellicle::tools {
+
+namespace {
+
+bool has_outlet(const GasSpec& gas) {
+  return std::any_of(gas.boundaries.begin(), gas.boundaries.end(), [](const cfd::BoundaryPatch& patch) {
+    return std::holds_alternative<cfd::Outlet>(patch.kind);
+  });
+}
+
+void check_evaporation(const CaseSpec& spec, core::InputProblems& problems) {
+  if (!*spec.heat->evaporation) return;
+  const auto refuse = [&](const char* what) { problems.add(spec.where("heat.evaporation"), what); };
+  if (!spec.gas->moisture) refuse("there is no vapour without gas.moisture; false, or with gas.moisture");
+  if (!has_outlet(*spec.gas) && spec.coupling.exchange != coupling::Exchange::one_way) {
+    refuse("the vapour needs an outlet: the pressure of a closed domain would have to rise; false, or an "
+           "outlet among gas.boundaries");
+  }
+}
+
+}  // namespace
+
+void check_heat(const CaseSpec& spec, core::InputProblems& problems) {
+  if (!spec.heat) {
+    for (std::size_t i = 0; i < spec.particles.size(); ++i) {
+      for (const char* key : {"initial_temperature", "initial_liquid", "initial_solids"}) {
+        const std::string path = fmt::format("particles.{}.{}", i, key);
+        if (spec.lines.contains(path)) problems.add(spec.where(path), "without heat it is of no use; heat");
+      }
+    }
+    return;
+  }
+  if (spec.particles.empty() || !spec.gas || !spec.gas->heat) {
+    problems.add(spec.where("heat"), spec.particles.empty()
+                                         ? "it is that of particles, of which there are none; gas.heat alone"
+                                         : "the gas must have a temperature; with gas.heat");
+    return;
+  }
+  if (!(spec.gas->heat->conductivity > 0)) {
+    problems.add(spec.where("gas.heat.conductivity"), "0 leaves no heat transfer; with heat more than 0 W/m/K");
+  }
+  check_evaporation(spec, problems);
+  for (const PopulationSpec& population : spec.particles) {
+    const MaterialSpec& material = spec.materials[static_cast<std::size_t>(population.material)];
+    if (material.heat_capacity) continue;
+    problems.add(spec.where(fmt::format("materials.{}.heat_capacity", material.name)),
+                 "missing; of particles with heat a heat capacity greater than 0 J/kg/K");
+  }
+}
+
+}  // namespace pellicle::tools
