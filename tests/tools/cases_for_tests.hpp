@@ -108,6 +108,26 @@ gas:
     - {name: jacket, on: back, wall: {heat_transfer: {coefficient: "5 W/m2/K", temperature: "15 degC"}}}
 )";
 
+/// A wet particle that dries.
+inline constexpr const char* drying_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
+time: {end: 1, gas_step: 0.01, particle_step: 1e-5}
+materials: {bead: {density: 1500, youngs_modulus: 1e6, poisson_ratio: 0.3, heat_capacity: "0.9 kJ/kg/K"}}
+contacts: {pairs: [{between: [bead, bead], restitution: 0.9, sliding_friction: 0.3}]}
+particles:
+  - {material: bead, diameter: "10 mm", initial_temperature: "40 degC", initial_liquid: 0.05, initial_solids: "1 %",
+     list: [{position: [0.5, 0.5, 0.5]}]}
+gas:
+  density: 1.2
+  viscosity: 1.8e-5
+  heat: {initial_temperature: 300}
+  moisture: {initial_vapour_mass_fraction: 0.01}
+  grid: {cells: [2, 3, 4]}
+  boundaries: [{name: out, on: top, outlet: {}}]
+heat: {nusselt: ranz_marshall, sherwood: ranz_marshall, evaporation: true, saturation: clausius_clapeyron, stefan_flow: true,
+       latent_heat: "2501 kJ/kg", latent_heat_temperature: "0 degC", initial_temperature: "30 degC"}
+coating: {liquid_heat_capacity: "4.2 kJ/kg/K", solids_density: "1.3 g/cm3", solids_heat_capacity: 1400}
+)";
+
 /// Warm gas of constant density that rises, dry.
 inline constexpr const char* rising_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
 time: {end: 1, gas_step: 0.01}

@@ -33,13 +33,15 @@ heat::HeatOptions make_heat_options(const CaseSpec& spec) {
   options.water = {reference, spec.heat->latent_heat, gas.heat->vapour_capacity,
                    spec.coating.liquid_heat_capacity};
   // Given at another temperature: by Kirchhoff's law that at the reference.
-  options.water.latent += options.water.latent - options.water.evaporation(spec.heat->latent_heat_temperature);
+  options.water.latent +=
+      options.water.latent - options.water.evaporation(spec.heat->latent_heat_temperature);
   return options;
 }
 
 heat::SurfaceState make_surface(const CaseSpec& spec, const dem::Particles& particles) {
   std::vector<Real> capacities;
-  for (const MaterialSpec& material : spec.materials) capacities.push_back(material.heat_capacity.value_or(0));
+  for (const MaterialSpec& material : spec.materials)
+    capacities.push_back(material.heat_capacity.value_or(0));
   const GasHeatSpec& gas = *spec.gas->heat;
   return {particles,
           capacities,
@@ -54,7 +56,7 @@ Real initial_temperature(const CaseSpec& spec, const PopulationSpec& population)
 }
 
 heat::Film initial_film(const PopulationSpec& population, Real mass) {
-  return {population.initial_liquid * mass, population.initial_solids * mass};
+  return {population.initial_liquid.value_or(0) * mass, population.initial_solids.value_or(0) * mass};
 }
 
 // Ids count listed particles first, then those of fills.

@@ -19,8 +19,9 @@ void check_evaporation(const CaseSpec& spec, core::InputProblems& problems) {
   const auto refuse = [&](const char* what) { problems.add(spec.where("heat.evaporation"), what); };
   if (!spec.gas->moisture) refuse("there is no vapour without gas.moisture; false, or with gas.moisture");
   if (!has_outlet(*spec.gas) && spec.coupling.exchange != coupling::Exchange::one_way) {
-    refuse("the vapour needs an outlet: the pressure of a closed domain would have to rise; false, or an "
-           "outlet among gas.boundaries");
+    refuse(
+        "the vapour needs an outlet: the pressure of a closed domain would have to rise; false, or an "
+        "outlet among gas.boundaries");
   }
 }
 
@@ -43,7 +44,8 @@ void check_heat(const CaseSpec& spec, core::InputProblems& problems) {
     return;
   }
   if (!(spec.gas->heat->conductivity > 0)) {
-    problems.add(spec.where("gas.heat.conductivity"), "0 leaves no heat transfer; with heat more than 0 W/m/K");
+    problems.add(spec.where("gas.heat.conductivity"),
+                 "0 leaves no heat transfer; with heat more than 0 W/m/K");
   }
   check_evaporation(spec, problems);
   for (const PopulationSpec& population : spec.particles) {

@@ -21,8 +21,9 @@ void describe_exchange(Keys& keys, HeatSpec& heat) {
             heat.evaporation);
   keys.choice({"saturation", "vapour pressure over water"}, saturation_laws, heat.saturation);
   keys.flag({"stefan_flow", "vapour that evaporates carries more of itself along"}, heat.stefan_flow);
-  keys.real({"latent_heat", "of evaporation, at latent_heat_temperature; elsewhere it follows from the heat "
-                            "capacities of vapour and liquid"},
+  keys.real({"latent_heat",
+             "of evaporation, at latent_heat_temperature; elsewhere it follows from the heat "
+             "capacities of vapour and liquid"},
             {dimension::specific_energy, range::positive}, heat.latent_heat);
   keys.real({"latent_heat_temperature", "at which latent_heat is given"},
             {dimension::temperature, range::positive}, heat.latent_heat_temperature);
@@ -31,8 +32,8 @@ void describe_exchange(Keys& keys, HeatSpec& heat) {
 }
 
 void describe_film(Keys& keys, CoatingSpec& coating) {
-  keys.real({"liquid_heat_capacity", "of the liquid part of films"}, {dimension::heat_capacity, range::positive},
-            coating.liquid_heat_capacity);
+  keys.real({"liquid_heat_capacity", "of the liquid part of films"},
+            {dimension::heat_capacity, range::positive}, coating.liquid_heat_capacity);
   keys.real({"solids_density", "of the dry coating"}, {dimension::density, range::positive},
             coating.solids_density);
   keys.real({"solids_heat_capacity", "of the same"}, {dimension::heat_capacity, range::positive},
@@ -43,8 +44,8 @@ void describe_film(Keys& keys, CoatingSpec& coating) {
 
 void describe_heat_and_films(Keys& keys, CaseSpec& spec) {
   keys.section<HeatSpec>(
-      {"heat", "particles have a temperature, and exchange heat and vapour with the gas; needs gas.heat"}, spec.heat,
-      describe_exchange);
+      {"heat", "particles have a temperature, and exchange heat and vapour with the gas; needs gas.heat"},
+      spec.heat, describe_exchange);
   std::optional<CoatingSpec> held;
   if (!keys.reading() && spec.heat) held = spec.coating;
   keys.section<CoatingSpec>({"coating", "what films on particles are made of"}, held, describe_film);

@@ -228,9 +228,11 @@ void describe_population(Keys& keys, PopulationSpec& population, CaseSpec& spec)
   keys.flag({"fixed", "stays in place, is felt by other particles and by the gas"}, population.fixed);
   keys.real({"initial_temperature", "with heat", Need::has_default, "heat.initial_temperature"},
             {dimension::temperature, range::positive}, population.initial_temperature);
-  keys.real({"initial_liquid", "with heat: liquid on a particle, over the particle's mass"},
-            {dimension::pure_number, range::non_negative}, population.initial_liquid);
-  keys.real({"initial_solids", "with heat: dry coating on a particle, over the particle's mass"},
+  keys.real(
+      {"initial_liquid", "with heat: liquid on a particle, over the particle's mass", Need::has_default, "0"},
+      {dimension::pure_number, range::non_negative}, population.initial_liquid);
+  keys.real({"initial_solids", "with heat: dry coating on a particle, over the particle's mass",
+             Need::has_default, "0"},
             {dimension::pure_number, range::non_negative}, population.initial_solids);
   keys.section<FillSpec>({"fill", "a region to be filled"}, population.fill, describe_fill);
   keys.list<ListedParticleSpec>(

@@ -157,8 +157,8 @@ struct PopulationSpec {
   Vec3 spin;                       ///< likewise [rad/s]
   bool fixed = false;              ///< likewise: never moves, but is felt by others and by the gas
   std::optional<Real> initial_temperature;  ///< [K]; none: HeatSpec's
-  Real initial_liquid = 0;                  ///< mass of liquid on a particle over that of the particle
-  Real initial_solids = 0;                  ///< likewise of a dry coating
+  std::optional<Real> initial_liquid;  ///< mass of liquid on a particle over that of the particle; none: 0
+  std::optional<Real> initial_solids;  ///< likewise of a dry coating
   std::optional<FillSpec> fill;
   std::vector<ListedParticleSpec> list;
   std::optional<FeedSpec> feed;

@@ -225,7 +225,7 @@ void Simulation::feed_particles() {
     const PopulationSpec& fed = spec_.particles[population++];
     if (!feed.is_due(time_.time())) continue;
     if (surface_) {
-      surface_->expect({initial_temperature(spec_, fed), {fed.initial_liquid, fed.initial_solids}});
+      surface_->expect({initial_temperature(spec_, fed), initial_film(fed, 1)});
     }
     particles_->add_particles(feed.draw(
         time_.time(), time_.step(), dem::spheres_near(*particles_, feed.reach()), particles_->wall_time()));
