@@ -80,7 +80,7 @@ def main():
         print(f"outer step {gas_step:g} s to {end}: differs from 1e-2 s by at most {largest:.2e} K")
     axes.set_xlabel("time [s]")
     axes.set_ylabel("temperature of the particle [K]")
-    axes.legend(title="water; lines: 1-D model, rings: pellicle")
+    axes.legend(title="water; lines: 1-D model, rings: pellicle", loc="lower center", bbox_to_anchor=(0.5, 1), ncols=4)
     figure.tight_layout()
     options.image.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(options.image, dpi=110)

@@ -157,7 +157,7 @@ TEST(HeatExchange, ClosedBoxReachesItsEquilibrium) {
   };
   for (const Start& start : {Start{290, 340, 0.002, 2e-7}, Start{300, 345, 0.002, 2e-8},
                              Start{330, 300, 0.01, 1e-7}, Start{285, 340, 0.08, 0}}) {
-    for (const Real dt : {2e-2, 5.0}) {
+    for (const Real dt : {0.2, 5.0}) {
       std::vector<Grain> grains;
       grains.reserve(8);
       for (int i = 0; i < 8; ++i) {
@@ -174,7 +174,7 @@ TEST(HeatExchange, ClosedBoxReachesItsEquilibrium) {
       }
       const Equilibrium expected =
           find_equilibrium(box.gas_mass(0) * (1 - start.vapour), water_mass, energy, beads, options);
-      const int steps = dt < 1 ? 40000 : 2000;
+      const int steps = dt < 1 ? 2500 : 300;
       for (int n = 0; n < steps; ++n) box.step(dt);
       // At rest every step rounds the same way.
       EXPECT_NEAR(box.water_mass() / water_mass, 1, 2.2e-16 * steps);
