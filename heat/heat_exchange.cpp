@@ -1,8 +1,6 @@
 #include "heat/heat_exchange.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
+#include <string>
 
 #include "core/checkpoint.hpp"
 #include "core/error.hpp"
@@ -341,7 +339,7 @@ void HeatExchange::update(const dem::Particles& particles, const coupling::Momen
   Kokkos::deep_copy(gain_host_, gain_);
   book(step);
   if (broken > 0) {
-    throw RunError(fmt::format("heat: the temperature of {} particles is no longer finite", broken));
+    throw RunError("heat: the temperature of " + std::to_string(broken) + " particles is no longer finite");
   }
 }
 
