@@ -124,49 +124,50 @@ TEST(CaseTurbulence, ContradictionsAreRefused) {
   EXPECT_TRUE(says(turbulent("gas.boundaries.in.inlet.turbulence.length_scale=0"), "greater than 0"));
   EXPECT_TRUE(says(errors(tests::channel_case, {"output.snapshots.gas=[eddy_viscosity]"}),
                    "eddy_viscosity needs a model of turbulence; gas.turbulence: k_epsilon"));
+}
 
-  TEST(CaseHeat, KeysOfParticlesAreRead) {
-    const CaseSpec spec = parse_case(drying_case, "c.yaml");
-    const HeatSpec& heat = *spec.heat;
-    EXPECT_EQ(heat.nusselt, "ranz_marshall");
-    EXPECT_EQ(heat.saturation, "clausius_clapeyron");
-    EXPECT_TRUE(heat.stefan_flow);
-    EXPECT_EQ(heat.latent_heat, 2.501e6);
-    EXPECT_NEAR(heat.latent_heat_temperature, 273.15, 1e-12);
-    EXPECT_NEAR(*heat.initial_temperature, 303.15, 1e-12);
-    EXPECT_NEAR(*spec.particles[0].initial_temperature, 313.15, 1e-12);
-    EXPECT_EQ(spec.particles[0].initial_liquid, 0.05);
-    EXPECT_EQ(spec.particles[0].initial_solids, 0.01);
-    EXPECT_EQ(spec.materials[0].heat_capacity, 900);
-    EXPECT_EQ(spec.coating.solids_density, 1300);
-    EXPECT_EQ(spec.coating.liquid_heat_capacity, 4200);
-  }
+TEST(CaseHeat, KeysOfParticlesAreRead) {
+  const CaseSpec spec = parse_case(drying_case, "c.yaml");
+  const HeatSpec& heat = *spec.heat;
+  EXPECT_EQ(heat.nusselt, "ranz_marshall");
+  EXPECT_EQ(heat.saturation, "clausius_clapeyron");
+  EXPECT_TRUE(heat.stefan_flow);
+  EXPECT_EQ(heat.latent_heat, 2.501e6);
+  EXPECT_NEAR(heat.latent_heat_temperature, 273.15, 1e-12);
+  EXPECT_NEAR(*heat.initial_temperature, 303.15, 1e-12);
+  EXPECT_NEAR(*spec.particles[0].initial_temperature, 313.15, 1e-12);
+  EXPECT_EQ(spec.particles[0].initial_liquid, 0.05);
+  EXPECT_EQ(spec.particles[0].initial_solids, 0.01);
+  EXPECT_EQ(spec.materials[0].heat_capacity, 900);
+  EXPECT_EQ(spec.coating.solids_density, 1300);
+  EXPECT_EQ(spec.coating.liquid_heat_capacity, 4200);
+}
 
-  // Without moisture nothing evaporates, and particles begin as warm as the gas.
-  TEST(CaseHeat, DefaultsFollowFromTheGas) {
-    const CaseSpec wet = parse_case(drying_case, "c.yaml", {"heat={}"});
-    EXPECT_TRUE(*wet.heat->evaporation);
-    EXPECT_EQ(*wet.heat->initial_temperature, 300);
-    EXPECT_EQ(wet.heat->nusselt, "gunn");
-    const CaseSpec dry = parse_case(drying_case, "c.yaml", {"heat={}", "gas.moisture="});
-    EXPECT_FALSE(*dry.heat->evaporation);
-  }
+// Without moisture nothing evaporates, and particles begin as warm as the gas.
+TEST(CaseHeat, DefaultsFollowFromTheGas) {
+  const CaseSpec wet = parse_case(drying_case, "c.yaml", {"heat={}"});
+  EXPECT_TRUE(*wet.heat->evaporation);
+  EXPECT_EQ(*wet.heat->initial_temperature, 300);
+  EXPECT_EQ(wet.heat->nusselt, "gunn");
+  const CaseSpec dry = parse_case(drying_case, "c.yaml", {"heat={}", "gas.moisture="});
+  EXPECT_FALSE(*dry.heat->evaporation);
+}
 
-  TEST(CaseHeat, WhatCannotBeIsRefused) {
-    const auto drying = [](const std::string& assignment) { return errors(drying_case, {assignment}); };
-    EXPECT_EQ(drying("heat.latent_heat=0"),
-              "--set: heat.latent_heat: \"0\" is out of range; an energy per mass greater than 0");
-    EXPECT_NE(drying("gas.moisture=").find("heat.evaporation: there is no vapour without gas.moisture"),
-              std::string::npos);
-    EXPECT_NE(drying("gas.heat=").find("heat: the gas must have a temperature; with gas.heat"),
-              std::string::npos);
-    EXPECT_NE(drying("gas.boundaries=[]").find("heat.evaporation: the vapour needs an outlet"),
-              std::string::npos);
-    EXPECT_NE(drying("materials.bead.heat_capacity=").find("materials.bead.heat_capacity: missing"),
-              std::string::npos);
-    EXPECT_NE(drying("heat=").find("particles.0.initial_liquid: without heat it is of no use"),
-              std::string::npos);
-  }
+TEST(CaseHeat, WhatCannotBeIsRefused) {
+  const auto drying = [](const std::string& assignment) { return errors(drying_case, {assignment}); };
+  EXPECT_EQ(drying("heat.latent_heat=0"),
+            "--set: heat.latent_heat: \"0\" is out of range; an energy per mass greater than 0");
+  EXPECT_NE(drying("gas.moisture=").find("heat.evaporation: there is no vapour without gas.moisture"),
+            std::string::npos);
+  EXPECT_NE(drying("gas.heat=").find("heat: the gas must have a temperature; with gas.heat"),
+            std::string::npos);
+  EXPECT_NE(drying("gas.boundaries=[]").find("heat.evaporation: the vapour needs an outlet"),
+            std::string::npos);
+  EXPECT_NE(drying("materials.bead.heat_capacity=").find("materials.bead.heat_capacity: missing"),
+            std::string::npos);
+  EXPECT_NE(drying("heat=").find("particles.0.initial_liquid: without heat it is of no use"),
+            std::string::npos);
+}
 
 }  // namespace
 }  // namespace pellicle::tools
