@@ -376,8 +376,11 @@ class Checker {
     if (of_gas && spec_.gas) check_carried(where, key, name);
     if (!of_gas && !spec_.follows(name)) {
       wrong(where, key,
-            fmt::format("{} needs {}, which the case has not; another name", name,
-                        name == "particle_temperature" ? "heat" : "spray"));
+            fmt::format(
+                "{} needs {}, which the case has not; another name", name,
+                name == "particle_temperature"
+                    ? "heat"
+                    : (name.ends_with("hits") || name.ends_with("hit_time") ? "spray" : "heat or spray")));
     }
     if (!of_gas && spec_.particles.empty()) {
       wrong(where, key,

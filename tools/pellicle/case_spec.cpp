@@ -81,11 +81,12 @@ CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {
 }
 
 bool CaseSpec::follows(std::string_view quantity) const {
-  constexpr bool heat = false, spray = false;
-  if (quantity == "particle_temperature" || quantity == "particle_temperature_mean") return heat;
+  const bool warm = heat.has_value();
+  constexpr bool spray = false;
+  if (quantity == "particle_temperature" || quantity == "particle_temperature_mean") return warm;
   if (quantity == "hits" || quantity == "first_hit_time" || quantity == "last_hit_time") return spray;
   if (quantity == "film_liquid" || quantity == "film_solids" || quantity == "coating_thickness") {
-    return heat || spray;
+    return warm || spray;
   }
   return true;
 }
