@@ -7,12 +7,10 @@
 #include "core/types.hpp"
 #include "core/vector.hpp"
 #include "spray/droplet_sizes.hpp"
+#include "spray/spray_pattern.hpp"
 #include "spray/swept_capture_laws.hpp"
 
 namespace pellicle::spray {
-
-/// Where droplets go within the cone.
-enum class SprayPattern { full, hollow };
 
 struct Nozzle {
   std::string name;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 #include "core/time_control.hpp"
 #include "tools/pellicle/model_families.hpp"
@@ -46,6 +47,7 @@ class Checker {
     check_sides();
     if (!spec_.particles.empty()) check_periodic_width();
     if (spec_.gas && !spec_.particles.empty()) check_coupling();
+    for (const auto& nozzle : spec_.spray) check_nozzle(nozzle);
     for (const auto& line : spec_.output.lines) check_line(line);
     for (const auto& probe : spec_.output.probes) check_probe(probe);
     for (const auto& field : spec_.output.snapshots.gas) {
@@ -99,6 +101,7 @@ class Checker {
   void check_names() {
     check_unique(spec_.walls);
     if (spec_.gas) check_unique(spec_.gas->boundaries);
+    check_unique(spec_.spray);
     check_unique(spec_.output.lines);
     check_unique(spec_.output.probes);
     check_unique(spec_.output.histograms);
@@ -245,6 +248,26 @@ class Checker {
                       fraction < 1 ? fmt::format("{:.3g} % of", 100 * fraction)
                                    : fmt::format("{:.3g} times", fraction),
                       100 * limit, fill_patterns[static_cast<std::size_t>(fill.pattern)].name));
+    }
+  }
+
+  void check_nozzle(const NozzleSpec& nozzle) {
+    if (spec_.particles.empty()) {
+      wrong(nozzle.where, "name", "a case without particles has nothing to spray; particles, or no spray");
+    }
+    if (!inside(nozzle.position)) {
+      wrong(nozzle.where, "position", text(nozzle.position) + " m is out of the domain; " + domain_text());
+    }
+    if (!(nozzle.to > nozzle.from)) {
+      wrong(nozzle.where, "to",
+            fmt::format("from {:g} to {:g} s is no time; later than from", nozzle.from, nozzle.to));
+    }
+    if (!nozzle.sizes) return;
+    try {
+      (void)dem::SizeSampler(*nozzle.sizes->distribution());  // throws here, not later
+    } catch (const std::invalid_argument& error) {
+      wrong(nozzle.where, "droplet_diameter",
+            fmt::format("{}; a distribution with sizes between its bounds", error.what()));
     }
   }
 

@@ -129,6 +129,11 @@ void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
   for (auto& population : spec.particles) {
     if (population.feed && population.feed->to == 0) population.feed->to = spec.time.end;
   }
+  for (auto& nozzle : spec.spray) {
+    if (nozzle.to == 0) nozzle.to = spec.time.end;
+    const bool hollow = nozzle.pattern == spray::SprayPattern::hollow;
+    if (hollow && !nozzle.inner_cone_angle) nozzle.inner_cone_angle = 0.8 * nozzle.cone_angle;
+  }
   for (auto& probe : spec.output.probes) {
     if (probe.quantities.empty()) probe.quantities = all_quantities(spec, probe);
   }

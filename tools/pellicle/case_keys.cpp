@@ -66,6 +66,9 @@ void describe_time(Keys& keys, TimeSpec& time) {
                 {"particle_step", "step of the particles; gas_step is a whole multiple of it",
                  Need::has_default, "required with particles"},
                 {dimension::duration, range::positive}, time.particle_step);
+  keys.real({"parcel_step", "how often parcels of the spray move, in whole particle steps", Need::has_default,
+             "as seldom as their path stays below a particle's radius, or every particle step"},
+            {dimension::duration, range::positive}, time.parcel_step);
   keys.real({"courant",
              "of the gas: where it would be larger, an outer step is divided into equal parts, each of whole "
              "particle steps",
@@ -157,6 +160,7 @@ void describe_case(Keys& keys, CaseSpec& spec) {
   describe_gas(keys, spec);
   describe_coupling(keys, spec);
   describe_heat_and_films(keys, spec);
+  describe_spray(keys, spec);
   describe_output(keys, spec);
 }
 

@@ -19,6 +19,7 @@ void describe_gas(core::Keys& keys, CaseSpec& spec);
 void describe_coupling(core::Keys& keys, CaseSpec& spec);
 /// Of the particles, and their films.
 void describe_heat_and_films(core::Keys& keys, CaseSpec& spec);
+void describe_spray(core::Keys& keys, CaseSpec& spec);
 void describe_output(core::Keys& keys, CaseSpec& spec);
 
 // Pieces that several parts use.
@@ -35,6 +36,8 @@ void describe_gas_grid(core::Keys& keys, GridSpec& grid, const DomainSpec& domai
 void describe_transfer_grid(core::Keys& keys, GridSpec& transfer, const DomainSpec& domain);
 /// The quantities that a probe of this kind may show.
 core::ModelList quantities_of(const ProbeSpec& probe);
+/// How diameters are spread, of particles or of droplets.
+void describe_sizes(core::Keys& keys, SizesSpec& sizes);
 /// The radii of a disc that may have a hole.
 void describe_ring(core::Keys& keys, Real& radius, Real& inner_radius);
 /// A number for which 0 stands for "not given".

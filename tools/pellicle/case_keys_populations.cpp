@@ -44,6 +44,8 @@ void describe_table(Keys& keys, dem::TableSizes& table) {
   keys.choice({"by", "what the shares count"}, share_of_list, table.by);
 }
 
+}  // namespace
+
 void describe_sizes(Keys& keys, SizesSpec& sizes) {
   keys.section<dem::UniformSizes>({"uniform", "every diameter from min to max equally often"}, sizes.uniform,
                                   describe_cut<dem::UniformSizes>);
@@ -78,6 +80,8 @@ void describe_sizes(Keys& keys, SizesSpec& sizes) {
                                 describe_table);
   keys.exactly_one({"uniform", "normal", "log_normal", "rosin_rammler", "table"});
 }
+
+namespace {
 
 /// A round region: its axis, and radii greater than 0, or one of them 0 for a cone.
 template <class Region>

@@ -19,6 +19,7 @@
 #include "dem/cohesion_laws.hpp"
 #include "dem/fill.hpp"
 #include "dem/size_distribution.hpp"
+#include "spray/spray_pattern.hpp"
 
 namespace pellicle::tools {
 
@@ -40,9 +41,10 @@ struct TimeSpec {
   Real gas_step = 0;
   /// [s]; gas_step / particle_step is a whole number; equals gas_step without particles.
   Real particle_step = 0;
-  std::optional<Real> courant;  ///< of the gas; the outer step is divided where it would be larger
-  Real impact_speed = 0;        ///< largest impact speed expected, for the bound on particle_step [m/s]
-  Real settle = 0;              ///< gas off, for so long before t = 0 [s]
+  std::optional<Real> courant;      ///< of the gas; the outer step is divided where it would be larger
+  std::optional<Real> parcel_step;  ///< how often parcels of the spray move [s]; none: they choose
+  Real impact_speed = 0;            ///< largest impact speed expected, for the bound on particle_step [m/s]
+  Real settle = 0;                  ///< gas off, for so long before t = 0 [s]
   std::optional<SettleSpec> settle_until;  ///< in place of `settle`, which then is 0
 
   /// The longest that particles settle [s].
@@ -300,6 +302,35 @@ struct CouplingSpec {
   Real smoothing_length = 0;   ///< of what particles bring to the cells [m]; 0: none
 };
 
+/// Share of the droplets that stay on a particle, over the impact Weber number.
+struct CaptureSpec {
+  std::vector<Real> weber;  ///< increasing
+  std::vector<Real> efficiency;
+  Real surface_tension = 0.072;  ///< [N/m]
+};
+
+/// A nozzle, and the droplets that leave it.
+struct NozzleSpec {
+  std::string where;
+  std::string name;
+  Vec3 position;                         ///< [m]
+  Vec3 axis{0, 0, 1};                    ///< of length 1
+  Real cone_angle = 0;                   ///< full [rad]
+  spray::SprayPattern pattern = spray::SprayPattern::full;
+  std::optional<Real> inner_cone_angle;  ///< of a hollow cone, full [rad]; filled in
+  Real nozzle_radius = 0;                ///< [m]
+  Real speed = 0;                        ///< [m/s]
+  Real mass_rate = 0;                    ///< liquid and solids [kg/s]
+  Real solids_fraction = 0;              ///< of the mass
+  Real density = 1000;                   ///< of a droplet [kg/m3]
+  Real temperature = 293.15;             ///< [K]
+  Real droplet_diameter = 0;             ///< [m]; 0 with `sizes`
+  std::optional<SizesSpec> sizes;
+  Real droplets_per_parcel = 1;
+  Real from = 0, to = 0;  ///< [s]; `to` is filled in
+  std::optional<CaptureSpec> capture;
+};
+
 /// An interval of simulated time; both ends are filled in.
 struct WindowSpec {
   Real from = 0, to = 0;  ///< [s]
@@ -402,6 +433,7 @@ struct CaseSpec {
   CouplingSpec coupling;       ///< of use only with both gas and particles
   std::optional<HeatSpec> heat;
   CoatingSpec coating;  ///< of use only where particles have films
+  std::vector<NozzleSpec> spray;
   OutputSpec output;
   std::vector<std::string> warnings;  ///< each `file:line: key.path: ...`; the run goes on
   std::map<std::string, std::string>

@@ -8,6 +8,7 @@
 #include "dem/contact_laws.hpp"
 #include "dem/size_distribution.hpp"
 #include "heat/heat_options.hpp"
+#include "spray/spray_pattern.hpp"
 #include "tools/pellicle/output_fields.hpp"
 
 namespace pellicle::tools {
@@ -28,6 +29,12 @@ constexpr core::ModelInfo fill_pattern_list[] = {
     {"random",
      "up to a solids fraction of 0.30 uniform, one after the other; up to 0.60 by moving overlaps away"},
     {"hexagonal", "close-packed layers, the bottom one first; up to a solids fraction of 0.74"}};
+
+static_assert(static_cast<int>(spray::SprayPattern::full) == 0 &&
+              static_cast<int>(spray::SprayPattern::hollow) == 1);
+constexpr core::ModelInfo spray_pattern_list[] = {
+    {"full", "uniform over the solid angle of the cone, from anywhere on the orifice"},
+    {"hollow", "uniform over the solid angle between two cones, from the rim of the orifice outwards"}};
 
 template <std::size_t N, std::size_t M>
 constexpr std::array<core::ModelInfo, N + M> join(const std::array<core::ModelInfo, N>& a,
@@ -58,6 +65,7 @@ constinit const core::ModelList drag_laws = core::model_list<coupling::DragLaw>(
 constinit const core::ModelList depositions = core::model_list<coupling::Deposition>();
 constinit const core::ModelList transfer_laws = core::model_list<heat::TransferLaw>();
 constinit const core::ModelList saturation_laws = core::model_list<heat::SaturationLaw>();
+constinit const core::ModelList spray_patterns = spray_pattern_list;
 constinit const core::ModelList line_quantities = line_quantity_list;
 constinit const core::ModelList probe_quantities = probe_quantity_list;
 constinit const core::ModelList plane_probe_quantities = plane_probe_quantity_list;
@@ -81,6 +89,7 @@ const std::vector<ModelFamily>& model_families() {
       {"heat.nusselt", "Heat transfer between gas and particles", transfer_laws},
       {"heat.sherwood", "Transfer of vapour between gas and particles", transfer_laws},
       {"heat.saturation", "Vapour pressure over water", saturation_laws},
+      {"spray.pattern", "Where the droplets of a nozzle go", spray_patterns},
   };
   return families;
 }

@@ -22,6 +22,7 @@ extern const core::ModelList drag_laws;
 extern const core::ModelList depositions;
 extern const core::ModelList transfer_laws;
 extern const core::ModelList saturation_laws;
+extern const core::ModelList spray_patterns;  ///< spray::SprayPattern
 
 /// Quantities of lines: of particles, then of the gas. Quantities of probes also have those of the bed.
 extern const core::ModelList line_quantities;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/files.hpp"
@@ -24,6 +25,40 @@ double seconds_of(const Summary& summary, core::Part part) {
 double particle_seconds(const Summary& summary) {
   return seconds_of(summary, core::Part::contacts) + seconds_of(summary, core::Part::neighbours) +
          seconds_of(summary, core::Part::motion);
+}
+
+/// The masses of a nozzle, or of all [kg].
+constexpr std::pair<const char*, Real spray::NozzleFigures::*> spray_masses[] = {
+    {"injected", &spray::NozzleFigures::injected},   {"captured", &spray::NozzleFigures::captured},
+    {"wall_loss", &spray::NozzleFigures::wall_loss}, {"overspray", &spray::NozzleFigures::overspray},
+    {"in_flight", &spray::NozzleFigures::in_flight},
+};
+
+Json spray_json(const SprayFigures& spray) {
+  Json json;
+  for (const auto& [name, mass] : spray_masses) json[name] = spray.total(mass);
+  json["enthalpy"] = spray.heat.enthalpy;
+  json["free_heat"] = spray.heat.free_heat;
+  for (const spray::NozzleFigures& nozzle : spray.nozzles) {
+    Json& figures = json["nozzles"][nozzle.name];
+    for (const auto& [name, mass] : spray_masses) figures[name] = nozzle.*mass;
+    figures["solids_fraction"] = nozzle.solids_fraction;
+    figures["parcels"] = nozzle.parcels;
+  }
+  return json;
+}
+
+SprayFigures read_spray(const Json& json) {
+  SprayFigures spray;
+  spray.heat = {json.at("enthalpy"), json.at("free_heat")};
+  for (const auto& [name, figures] : json.at("nozzles").items()) {
+    spray::NozzleFigures& nozzle = spray.nozzles.emplace_back();
+    nozzle.name = name;
+    for (const auto& [key, mass] : spray_masses) nozzle.*mass = figures.at(key);
+    nozzle.solids_fraction = figures.at("solids_fraction");
+    nozzle.parcels = figures.at("parcels");
+  }
+  return spray;
 }
 
 }  // namespace
@@ -108,6 +143,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     if (boundary.heat_in) figures["heat_in"] = *boundary.heat_in;
     if (boundary.vapour_in) figures["vapour_in"] = *boundary.vapour_in;
   }
+  if (!summary.spray.nozzles.empty()) json["spray"] = spray_json(summary.spray);
   json["mass_left"] = summary.mass_left;
   json["left_by_side"] = Json::object();
   for (std::size_t side = 0; side < summary.left_by_side.size(); ++side) {
@@ -187,6 +223,7 @@ Summary read_summary(const std::filesystem::path& path) {
                                           optional("heat_in"), optional("vapour_in")});
       }
     }
+    if (json.contains("spray")) summary.spray = read_spray(json.at("spray"));
     summary.mass_left = json.at("mass_left");
     for (std::size_t side = 0; json.contains("left_by_side") && side < summary.left_by_side.size(); ++side) {
       const std::string name(domain_sides[side].name);
@@ -266,6 +303,21 @@ std::string report_text(const Summary& summary) {
     if (boundary.heat_in) figures += fmt::format(", {:.6g} J of heat in", *boundary.heat_in);
     if (boundary.vapour_in) figures += fmt::format(", {:.6g} kg of vapour in", *boundary.vapour_in);
     line(fmt::format("boundary {}", boundary.name), figures);
+  }
+  if (!summary.spray.nozzles.empty()) {
+    const SprayFigures& spray = summary.spray;
+    const Real injected = spray.total(&spray::NozzleFigures::injected);
+    const auto share = [&](Real spray::NozzleFigures::*mass) {
+      return injected > 0 ? 100 * spray.total(mass) / injected : 0;
+    };
+    line("sprayed", fmt::format("{:.6g} kg, {:.4g} kg of it solids", injected,
+                                spray.solids(&spray::NozzleFigures::injected)));
+    line("  captured", fmt::format("{:.2f} %", share(&spray::NozzleFigures::captured)));
+    line("  on walls", fmt::format("{:.2f} %", share(&spray::NozzleFigures::wall_loss)));
+    line("  left the domain", fmt::format("{:.2f} %", share(&spray::NozzleFigures::overspray)));
+    line("  in flight", fmt::format("{:.2f} %", share(&spray::NozzleFigures::in_flight)));
+    if (spray.heat.free_heat != 0)
+      line("  heated for nothing", fmt::format("{:.4g} J", spray.heat.free_heat));
   }
   for (std::size_t q = 0; q < summary.defects.size(); ++q) {
     if (summary.defects[q] == 0) continue;

@@ -12,6 +12,7 @@
 #include "core/types.hpp"
 #include "tools/pellicle/gas_boundary_figures.hpp"
 #include "tools/pellicle/gas_convergence.hpp"
+#include "tools/pellicle/spray_figures.hpp"
 #include "tools/pellicle/wall_figures.hpp"
 
 namespace pellicle::tools {
@@ -49,6 +50,7 @@ struct Summary {
   GasConvergence gas;
   std::vector<WallFigures> walls;  ///< what each wall received
   std::vector<GasBoundaryFigures> gas_boundaries;
+  SprayFigures spray;
 
   /// Particles x substeps / (contacts + neighbours + motion), all threads; 0 without particles.
   double particle_steps_per_second() const;

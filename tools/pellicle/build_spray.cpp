@@ -1,0 +1,64 @@
+#include "tools/pellicle/build_spray.hpp"
+
+namespace pellicle::tools {
+namespace {
+
+spray::CaptureEfficiency make_efficiency(const CaptureSpec& spec) {
+  spray::CaptureEfficiency made;
+  made.points = static_cast<int>(spec.weber.size());
+  made.surface_tension = spec.surface_tension;
+  for (std::size_t i = 0; i < spec.weber.size(); ++i) {
+    made.weber[i] = spec.weber[i];
+    made.share[i] = spec.efficiency[i];
+  }
+  return made;
+}
+
+spray::Nozzle make_nozzle(const NozzleSpec& spec) {
+  spray::Nozzle made;
+  made.name = spec.name;
+  made.position = spec.position;
+  made.axis = spec.axis;
+  made.cone_angle = spec.cone_angle;
+  made.pattern = spec.pattern;
+  made.inner_cone_angle = spec.inner_cone_angle.value_or(0);
+  made.radius = spec.nozzle_radius;
+  made.speed = spec.speed;
+  made.mass_rate = spec.mass_rate;
+  made.solids_fraction = spec.solids_fraction;
+  made.density = spec.density;
+  made.temperature = spec.temperature;
+  if (spec.sizes) {
+    made.diameter = *spec.sizes->distribution();
+  } else {
+    made.diameter = spec.droplet_diameter;
+  }
+  made.droplets_per_parcel = spec.droplets_per_parcel;
+  made.from = spec.from;
+  made.to = spec.to;
+  if (spec.capture) made.efficiency = make_efficiency(*spec.capture);
+  return made;
+}
+
+}  // namespace
+
+spray::SprayOptions make_spray_options(const CaseSpec& spec) {
+  spray::SprayOptions options;
+  for (const NozzleSpec& nozzle : spec.spray) options.nozzles.push_back(make_nozzle(nozzle));
+  options.gravity = spec.gravity;
+  options.parcel_step = spec.time.parcel_step.value_or(0);
+  options.seed = spec.seed;
+  return options;
+}
+
+spray::ParcelGas make_parcel_gas(const CaseSpec& spec, const coupling::MomentumExchange* exchange) {
+  spray::ParcelGas gas;
+  if (exchange == nullptr) return gas;
+  gas.drag = {spec.gas->options.density, spec.gas->options.viscosity};
+  gas.grid = exchange->gas_locator();
+  gas.cut = exchange->cut_grid();
+  gas.velocity = exchange->gas_velocity();
+  return gas;
+}
+
+}  // namespace pellicle::tools
