@@ -42,13 +42,14 @@ heat::SurfaceState make_surface(const CaseSpec& spec, const dem::Particles& part
   std::vector<Real> capacities;
   for (const MaterialSpec& material : spec.materials)
     capacities.push_back(material.heat_capacity.value_or(0));
+  heat::HeatCapacities film;
+  film.liquid = spec.coating.liquid_heat_capacity;
+  film.solids = spec.coating.solids_heat_capacity;
+  // With films alone temperatures are of no use.
+  if (!spec.heat) return {particles, capacities, film, film.reference_temperature};
   const GasHeatSpec& gas = *spec.gas->heat;
-  return {particles,
-          capacities,
-          {.reference_temperature = gas.reference_temperature.value_or(gas.initial_temperature),
-           .liquid = spec.coating.liquid_heat_capacity,
-           .solids = spec.coating.solids_heat_capacity},
-          *spec.heat->initial_temperature};
+  film.reference_temperature = gas.reference_temperature.value_or(gas.initial_temperature);
+  return {particles, capacities, film, *spec.heat->initial_temperature};
 }
 
 Real initial_temperature(const CaseSpec& spec, const PopulationSpec& population) {

@@ -13,7 +13,7 @@ namespace pellicle::tools {
 /// Of a case with heat.
 heat::HeatOptions make_heat_options(const CaseSpec& spec);
 
-/// Of a case with heat; for the engine whose particles these are.
+/// Of a case with heat or spray; for the engine whose particles these are.
 heat::SurfaceState make_surface(const CaseSpec& spec, const dem::Particles& particles);
 
 /// Temperature [K] and film [kg] of a particle of this population and mass [kg].

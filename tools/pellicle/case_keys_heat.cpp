@@ -47,7 +47,7 @@ void describe_heat_and_films(Keys& keys, CaseSpec& spec) {
       {"heat", "particles have a temperature, and exchange heat and vapour with the gas; needs gas.heat"},
       spec.heat, describe_exchange);
   std::optional<CoatingSpec> held;
-  if (!keys.reading() && spec.heat) held = spec.coating;
+  if (!keys.reading() && (spec.heat || !spec.spray.empty())) held = spec.coating;
   keys.section<CoatingSpec>({"coating", "what films on particles are made of"}, held, describe_film);
   if (keys.reading() && held) spec.coating = *held;
 }

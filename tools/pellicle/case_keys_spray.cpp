@@ -67,7 +67,8 @@ void describe_cone_angles(Keys& keys, NozzleSpec& nozzle) {
              Need::has_default, "0.8 of cone_angle with pattern hollow"},
             {dimension::angle, cone_angles}, nozzle.inner_cone_angle);
   if (!keys.reading() || !nozzle.inner_cone_angle) return;
-  if (nozzle.pattern != spray::SprayPattern::hollow) keys.problem("inner_cone_angle", "a full cone has none; only with pattern hollow");
+  if (nozzle.pattern != spray::SprayPattern::hollow)
+    keys.problem("inner_cone_angle", "a full cone has none; only with pattern hollow");
   if (*nozzle.inner_cone_angle > nozzle.cone_angle) {
     keys.problem("inner_cone_angle", "it is wider than cone_angle; a smaller one");
   }

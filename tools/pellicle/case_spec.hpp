@@ -313,9 +313,9 @@ struct CaptureSpec {
 struct NozzleSpec {
   std::string where;
   std::string name;
-  Vec3 position;                         ///< [m]
-  Vec3 axis{0, 0, 1};                    ///< of length 1
-  Real cone_angle = 0;                   ///< full [rad]
+  Vec3 position;        ///< [m]
+  Vec3 axis{0, 0, 1};   ///< of length 1
+  Real cone_angle = 0;  ///< full [rad]
   spray::SprayPattern pattern = spray::SprayPattern::full;
   std::optional<Real> inner_cone_angle;  ///< of a hollow cone, full [rad]; filled in
   Real nozzle_radius = 0;                ///< [m]

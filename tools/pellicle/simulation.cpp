@@ -14,6 +14,7 @@
 #include "tools/pellicle/build_case.hpp"
 #include "tools/pellicle/build_gas.hpp"
 #include "tools/pellicle/build_heat.hpp"
+#include "tools/pellicle/build_spray.hpp"
 
 namespace pellicle::tools {
 namespace {
@@ -42,7 +43,13 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
     zones_ = make_zones(spec_, particles_->particles());
     for (spray::ZoneVisits& zone : zones_) particles_->attach(zone);
     feeds_ = make_feeds(spec_, particles_->setup());
-    if (spec_.heat) particles_->attach(surface_.emplace(make_surface(spec_, particles_->particles())));
+    const bool sprayed = !spec_.spray.empty();
+    if (spec_.heat || sprayed)
+      particles_->attach(surface_.emplace(make_surface(spec_, particles_->particles())));
+    if (sprayed) {
+      spray_.emplace(make_spray_options(spec_), particles_->setup().walls);
+      particles_->attach(spray_->hit_records());
+    }
   }
   if (spec_.gas) {
     gas_.emplace(make_gas_solver(spec_, particles_ ? particles_->setup().walls : make_walls(spec_)));
@@ -50,6 +57,7 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
   }
   if (particles_ && gas_) exchange_.emplace(make_exchange(spec_, *gas_));
   if (spec_.heat) heat_.emplace(make_heat_options(spec_), gas_->geometry().volume);
+  if (spray_) parcel_gas_ = make_parcel_gas(spec_, exchange_ ? &*exchange_ : nullptr);
   if (particles_) {
     for (const WallSpec& wall : spec_.walls) walls_.push_back({wall.name, {}, {}, 0});
     particles_->hold_walls();  // until t = 0
@@ -64,7 +72,7 @@ void Simulation::start() {
   if (particles_) {
     const std::vector<dem::ParticleSeed> seeds = make_particles(spec_, particles_->setup().walls);
     particles_->set_particles(seeds);
-    if (surface_) set_initial_surface(spec_, seeds, *surface_);
+    if (spec_.heat) set_initial_surface(spec_, seeds, *surface_);
   }
   folder_.emplace(options_.output_folder,
                   options_.overwrite ? ResultsFolder::Existing::overwrite : ResultsFolder::Existing::refuse);
@@ -88,10 +96,12 @@ void Simulation::resume() {
   for (std::size_t i = 0; i < feeds_.size(); ++i) feeds_[i].load(file, "feeds/" + std::to_string(i));
   if (gas_ && time_.step() >= 0) gas_->load(file);
   if (exchange_ && time_.step() >= 0) exchange_->load(file);
-  if (heat_ && time_.step() >= 0) {
-    heat_->load(file);
-    settled_left_surface_ = {{file.read_double("run/settled_left_liquid"), 0},
-                             file.read_double("run/settled_left_enthalpy")};
+  if (heat_ && time_.step() >= 0) heat_->load(file);
+  if (spray_) spray_->load(file);
+  if (surface_ && time_.step() >= 0) {
+    settled_left_surface_ = {
+        {file.read_double("run/settled_left_liquid"), file.read_double("run/settled_left_solids")},
+        file.read_double("run/settled_left_enthalpy")};
   }
   ledger_.load(file);
   outputs_.emplace(spec_, *folder_, time_, gas_ ? &gas_->grid() : nullptr, time_.step());
@@ -183,7 +193,9 @@ void Simulation::advance_outer_step() {
   const int parts = choose_parts();
   for (int part = 0; part < parts; ++part) {
     sample_gas();
+    inject_spray(part, parts);
     move_particles(parts);
+    collect_spray();
     deposit_particles(parts);
     exchange_heat(parts);
     if (!time_.settling()) move_gas(parts);
@@ -224,7 +236,7 @@ void Simulation::feed_particles() {
     while (!spec_.particles[population].feed) ++population;
     const PopulationSpec& fed = spec_.particles[population++];
     if (!feed.is_due(time_.time())) continue;
-    if (surface_) {
+    if (spec_.heat) {
       surface_->expect({initial_temperature(spec_, fed), initial_film(fed, 1)});
     }
     particles_->add_particles(feed.draw(
@@ -256,11 +268,11 @@ void Simulation::move_particles(int parts) {
   const int substeps = time_.substeps() / parts;
   summary_.particle_steps += static_cast<double>(particles_->particles().count) * substeps;
   if (!coupled()) {
-    particles_->advance(substeps, timers_);
+    particles_->advance(substeps, timers_, spray_hook());
     return;
   }
-  coupling::advance_particles(*particles_, substeps, exchange_->fluid_force(particles_->particles()),
-                              timers_);
+  coupling::advance_particles(*particles_, substeps, exchange_->fluid_force(particles_->particles()), timers_,
+                              spray_hook());
 }
 
 void Simulation::deposit_particles(int parts) {
@@ -312,7 +324,8 @@ void Simulation::release_gas() {
   if (gas_) ledger_.open(Conserved::gas_mass, gas_->balance().mass_initial);
   if (surface_) settled_left_surface_ = surface_->left();
   if (gas_ && gas_->balance(cfd::Scalar::temperature)) ledger_.open(Conserved::energy, energy_stock());
-  if (gas_ && gas_->balance(cfd::Scalar::moisture)) ledger_.open(Conserved::water, water_stock());
+  if (has_vapour()) ledger_.open(Conserved::water, water_stock());
+  open_spray_ledger();
   Vec3 momentum{};
   if (gas_) momentum += gas_->balance().momentum;
   if (particles_) momentum += particles_->compute_totals().momentum;
@@ -357,10 +370,11 @@ Real Simulation::energy_stock() const {
   return stock + surface_->compute_totals().enthalpy;
 }
 
-/// Vapour in the gas, liquid on the particles [kg].
+/// Vapour in the gas, liquid on the particles and in flight [kg].
 Real Simulation::water_stock() const {
-  const Real vapour = gas_->balance(cfd::Scalar::moisture)->stock;
-  return surface_ ? vapour + surface_->compute_totals().film.liquid : vapour;
+  Real stock = has_vapour() ? gas_->balance(cfd::Scalar::moisture)->stock : 0;
+  if (surface_) stock += surface_->compute_totals().film.liquid;
+  return stock + summary_.spray.liquid(&spray::NozzleFigures::in_flight);
 }
 
 /// What gas and particles exchange with each other stays inside, unless the gas gives without losing: that is a source, by
@@ -371,15 +385,14 @@ void Simulation::update_heat_ledger() {
   const Real latent = heat_ ? heat_->options().water.latent : 0;
   const bool one_way = heat_ && heat_->options().one_way;
   const heat::HeatTotals given = one_way ? heat_->totals() : heat::HeatTotals{};
-  heat::SurfaceTotals in;
+  Real enthalpy = 0;  // that came with particles and with the droplets that they captured [J]
   if (heat_) {
-    in += surface_->entered();
-    in.enthalpy -= surface_->left().enthalpy - settled_left_surface_.enthalpy;
-    in.film.liquid -= surface_->left().film.liquid - settled_left_surface_.film.liquid;
+    enthalpy = surface_->entered().enthalpy - (surface_->left().enthalpy - settled_left_surface_.enthalpy) +
+               summary_.spray.heat.enthalpy;
   }
   if (warmth) {
     const Real through =
-        warmth->through_boundaries() + in.enthalpy + (vapour ? latent * vapour->through_boundaries() : 0);
+        warmth->through_boundaries() + enthalpy + (vapour ? latent * vapour->through_boundaries() : 0);
     ledger_.set_stock(Conserved::energy, energy_stock());
     ledger_.set_totals(Conserved::energy, Vec3{through, 0, 0},
                        Vec3{heat_ ? given.heat - latent * given.evaporated : warmth->sources, 0, 0},
@@ -387,8 +400,11 @@ void Simulation::update_heat_ledger() {
   }
   if (vapour) {
     ledger_.set_stock(Conserved::water, water_stock());
-    ledger_.set_totals(Conserved::water, Vec3{vapour->through_boundaries() + in.film.liquid, 0, 0},
-                       Vec3{heat_ ? -given.evaporated : vapour->sources, 0, 0}, vapour->gross);
+    ledger_.set_totals(
+        Conserved::water,
+        Vec3{vapour->through_boundaries() + films_that_came().liquid + summary_.spray.liquid_kept(), 0, 0},
+        Vec3{heat_ ? -given.evaporated : vapour->sources, 0, 0},
+        vapour->gross + summary_.spray.liquid(&spray::NozzleFigures::injected));
   }
 }
 
@@ -399,12 +415,13 @@ void Simulation::update_ledger() {
   Vec3 stock{}, through{}, sources{};
   Real gross = 0;
   Real pending = 0;
+  update_spray_ledger();
+  if (gas_) update_heat_ledger();
   if (gas_) {
     const cfd::GasBalance& gas = gas_->balance();
     ledger_.set_stock(Conserved::gas_mass, gas.mass);
     ledger_.set_totals(Conserved::gas_mass, Vec3{gas.mass_in() - gas.mass_out(), 0, 0},
                        Vec3{gas.mass_given, 0, 0}, gas.mass_in() + gas.mass_out() + std::abs(gas.mass_given));
-    update_heat_ledger();
     stock += gas.momentum;
     through += gas.convected + gas.boundary_pressure + gas.boundary_shear;
     sources += gas.body_force + gas.vapour;
@@ -491,8 +508,9 @@ void Simulation::write_outputs(bool last) {
 
 ParticleColumns Simulation::particle_columns() const {
   ParticleColumns columns = particles_->particles();
+  if (heat_) columns.temperature = surface_->temperature();
+  if (spray_) columns.hits = spray_->hit_record();
   if (surface_) {
-    columns.temperature = surface_->temperature();
     columns.film = surface_->film();
     columns.solids_density = spec_.coating.solids_density;
   }
@@ -513,9 +531,11 @@ void Simulation::write_checkpoint() {
   for (std::size_t i = 0; i < feeds_.size(); ++i) feeds_[i].save(file, "feeds/" + std::to_string(i));
   if (gas_ && time_.step() >= 0) gas_->save(file);
   if (exchange_ && time_.step() >= 0) exchange_->save(file);
-  if (heat_ && time_.step() >= 0) {
-    heat_->save(file);
+  if (heat_ && time_.step() >= 0) heat_->save(file);
+  if (spray_) spray_->save(file);
+  if (surface_ && time_.step() >= 0) {
     file.write("run/settled_left_liquid", settled_left_surface_.film.liquid);
+    file.write("run/settled_left_solids", settled_left_surface_.film.solids);
     file.write("run/settled_left_enthalpy", settled_left_surface_.enthalpy);
   }
   ledger_.save(file);

@@ -17,6 +17,7 @@
 #include "dem/feed.hpp"
 #include "heat/heat_exchange.hpp"
 #include "heat/surface_state.hpp"
+#include "spray/spray.hpp"
 #include "tools/pellicle/case_spec.hpp"
 #include "tools/pellicle/outputs.hpp"
 #include "tools/pellicle/results_folder.hpp"
@@ -53,13 +54,15 @@ class Simulation {
   void start();
   void resume();
 
-  // One outer step, in the order of docs/theory: particles enter, the gas is sampled, the particles move, they are deposited, heat and
-  // vapour are exchanged, the gas moves.
+  // One outer step, in the order of docs/theory: particles enter, the gas is sampled, parcels leave the nozzles,
+  // particles and parcels move, films take what was captured, the particles are deposited, heat and vapour are exchanged, the gas moves.
   void advance_outer_step();
   void feed_particles();
   int choose_parts() const;
   void sample_gas();
+  void inject_spray(int part, int parts);
   void move_particles(int parts);
+  void collect_spray();
   void deposit_particles(int parts);
   void exchange_heat(int parts);
   void move_gas(int parts);
@@ -71,6 +74,11 @@ class Simulation {
   void watch_zones();
   void update_ledger();
   void update_heat_ledger();
+  void open_spray_ledger();
+  void update_spray_ledger();
+  dem::SubstepHook spray_hook();
+  heat::Film films_that_came() const;
+  bool has_vapour() const { return gas_ && gas_->balance(cfd::Scalar::moisture) != nullptr; }
   Real energy_stock() const;
   Real water_stock() const;
   void write_outputs(bool last = false);
@@ -88,12 +96,15 @@ class Simulation {
   std::optional<ResultsFolder> folder_;
 
   std::optional<heat::SurfaceState> surface_;  // follows the particles, and outlives them
+  std::optional<spray::Spray> spray_;          // its hit records likewise
   std::optional<dem::Engine> particles_;
   std::vector<dem::Feed> feeds_;
   Zones zones_;
   std::optional<cfd::GasSolver> gas_;
   std::optional<coupling::MomentumExchange> exchange_;
   std::optional<heat::HeatExchange> heat_;
+  spray::ParcelGas parcel_gas_;               // without gas there is no drag
+  DeviceArray<Real> parcel_gas_temperature_;  // with heat [K]
   std::optional<Outputs> outputs_;
 
   core::Timers timers_;
