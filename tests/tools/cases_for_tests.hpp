@@ -247,6 +247,33 @@ walls:
 output: {probes: [{name: load, wall: tube, quantities: [wall_force_z, wall_torque_y], every: "1 ms"}]}
 )";
 
+/// Two nozzles with everything that nozzles have; no gas.
+inline constexpr const char* sprayed_case = R"(domain: {min: [0, 0, 0], max: ["40 mm", "40 mm", "100 mm"]}
+time: {end: 0.1, particle_step: 1e-6, parcel_step: "2e-6 s"}
+materials: {glass: {density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.22}}
+contacts: {pairs: [{between: [glass, glass], restitution: 0.9, sliding_friction: 0.3}]}
+particles:
+  - {material: glass, count: 50, diameter: "2 mm", fill: {box: {min: ["10 mm", "10 mm", "40 mm"], max: ["30 mm", "30 mm", "60 mm"]}}}
+coating: {solids_density: 1300}
+spray:
+  - {name: gun, position: ["20 mm", "20 mm", "10 mm"], axis: [0, 3, 4], cone_angle: "30 deg", nozzle_radius: "0.5 mm",
+     speed: "20 m/s", mass_rate: "5 g/min", solids_fraction: "20 %", droplet_diameter: "30 um", droplets_per_parcel: 10,
+     density: 1050, temperature: "25 degC", from: "10 ms", to: "50 ms",
+     capture: {weber: [10, 100], efficiency: [1, 0.2], surface_tension: "60 mN/m"}}
+  - {name: ring, position: [0, 0, "90 mm"], axis: [0, 0, -1], cone_angle: "60 deg", pattern: hollow, speed: "10 m/s",
+     mass_rate: "1 g/min", droplet_diameter: {log_normal: {median: "30 um", geometric_sd: 1.3, by: mass, min: "10 um", max: "80 um"}}}
+  - {name: third, position: [0, 0, "90 mm"], pattern: hollow, cone_angle: 1, inner_cone_angle: 0.5, speed: 1, mass_rate: 1,
+     droplet_diameter: {uniform: {min: "10 um", max: "80 um"}}}
+  - {name: fourth, position: [0, 0, "90 mm"], speed: 1, mass_rate: 1,
+     droplet_diameter: {normal: {mean: "30 um", sd: "5 um", min: "10 um", max: "80 um"}}}
+  - {name: fifth, position: [0, 0, "90 mm"], speed: 1, mass_rate: 1,
+     droplet_diameter: {rosin_rammler: {size: "30 um", spread: 3, min: "10 um", max: "80 um"}}}
+  - {name: sixth, position: [0, 0, "90 mm"], speed: 1, mass_rate: 1,
+     droplet_diameter: {table: {diameters: ["10 um", "20 um"], shares: [3, 1], by: mass}}}
+  - {name: seventh, position: [0, 0, "90 mm"], speed: 1, mass_rate: 1,
+     droplet_diameter: {table: {diameters: ["10 um", "20 um"], finer: [0, 1]}}}
+)";
+
 /// Two particles and nothing else.
 inline constexpr const char* two_particles_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
 time: {end: 0.1, particle_step: 1e-5}

@@ -73,6 +73,25 @@ output:
   snapshots: {every: "50 ms", particles: [velocity]}
 """
 
+# Parcels, films and hits, with drying, a tube that cuts the grid and droplets that bounce.
+SPRAYED = CASE.replace("small bed", "small sprayed bed").replace("poisson_ratio: 0.22", "poisson_ratio: 0.22, heat_capacity: 840").replace(
+    "  viscosity: 1.87e-5", """  viscosity: 1.87e-5
+  heat: {initial_temperature: "60 degC"}
+  moisture: {initial_vapour_mass_fraction: 0.005}""").replace(
+    'm/s"}}', 'm/s", temperature: "60 degC", vapour_mass_fraction: 0.005}}').replace(
+    "material: wall}\n", """material: wall}
+  - {name: tube, cylinder: {from: ["15 mm", "6 mm", "20 mm"], to: ["15 mm", "6 mm", "40 mm"], radius: "5 mm"}, material: wall}
+""") + """
+heat: {}
+spray:
+  - {name: gun, position: ["15 mm", "6 mm", "12 mm"], cone_angle: "60 deg", nozzle_radius: "0.5 mm", speed: "10 m/s",
+     mass_rate: "5 g/min", solids_fraction: 0.2, droplets_per_parcel: 20,
+     droplet_diameter: {log_normal: {median: "30 um", geometric_sd: 1.3, min: "10 um", max: "80 um"}},
+     capture: {weber: [10, 500], efficiency: [1, 0.5]}}
+  - {name: other, position: ["5 mm", "6 mm", "50 mm"], axis: [0, 0, -1], cone_angle: "40 deg", speed: "20 m/s",
+     mass_rate: "5 g/min", droplet_diameter: "40 um", droplets_per_parcel: 5}
+"""
+
 # Counts of work done are no state of the bed.
 IGNORED = {"case"}
 
@@ -145,6 +164,7 @@ def is_reproducible(name, text, needed):
 
 def main():
     good = is_reproducible("bed", CASE, ["dem/position_radius"])
+    good &= is_reproducible("sprayed bed", SPRAYED, ["spray/state", "spray/hit_record", "heat/film"])
     good &= is_reproducible("block", BLOCK, ["dem/history/spring", "dem/wall_history/spring"])
     sys.exit(0 if good else 1)
 

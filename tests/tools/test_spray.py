@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+"""Every gram of a spray is accounted for in summary.json, at every checkpoint, at the end and after a restart.
+
+A small bed in a box with a tube, sprayed from below and from above, with drying. At each stop the five masses of each
+nozzle must balance, and the books of water, solids and energy must close to the bars of the design.
+"""
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ.get("PELLICLE_PROGRAM")
+
+CASE = """
+title: small sprayed bed
+seed: 3
+domain: {min: [0, 0, 0], max: ["24 mm", "24 mm", "60 mm"]}
+time: {end: "8 ms", gas_step: "1e-4 s", particle_step: "1e-5 s", impact_speed: "2 m/s"}
+materials:
+  glass: {density: 2505, youngs_modulus: 1e7, poisson_ratio: 0.22, heat_capacity: 840}
+contacts:
+  pairs:
+    - {between: [glass, glass], restitution: 0.9, sliding_friction: 0.3}
+    - {between: [glass, wall], restitution: 0.9, sliding_friction: 0.3}
+particles:
+  - {material: glass, count: 200, diameter: "3 mm", fill: {box: {min: [0, 0, 0], max: ["24 mm", "24 mm", "30 mm"]}}}
+walls:
+  - {name: sides, box: domain, open: [top], material: wall}
+  - {name: tube, cylinder: {from: ["12 mm", "12 mm", "30 mm"], to: ["12 mm", "12 mm", "50 mm"], radius: "6 mm"}, material: wall}
+gas:
+  density: 1.0
+  viscosity: 2.0e-5
+  heat: {initial_temperature: "60 degC"}
+  moisture: {initial_vapour_mass_fraction: 0.005}
+  grid: {cells: [8, 8, 15]}
+  boundaries:
+    - {name: rest, on: bottom, inlet: {velocity: "2 m/s", temperature: "60 degC", vapour_mass_fraction: 0.005}}
+    - {name: top, on: top, outlet: {pressure: 0}}
+coupling: {drag: beetstra}
+heat: {}
+spray:
+  - {name: below, position: ["12 mm", "12 mm", "20 mm"], cone_angle: "90 deg", nozzle_radius: "0.5 mm", speed: "15 m/s",
+     mass_rate: "5 g/min", solids_fraction: 0.2, droplets_per_parcel: 20, density: 1050,
+     droplet_diameter: {log_normal: {median: "30 um", geometric_sd: 1.3, min: "10 um", max: "80 um"}}}
+  - {name: above, position: ["5 mm", "5 mm", "59 mm"], axis: [0, 0, -1], pattern: hollow, cone_angle: "50 deg",
+     speed: "20 m/s", mass_rate: "2 g/min", solids_fraction: 0.1, droplet_diameter: "40 um", droplets_per_parcel: 10,
+     from: "1 ms", to: "6 ms", capture: {weber: [10, 500], efficiency: [1, 0.5]}}
+output:
+  checkpoint: {every: "2 ms"}
+"""
+
+
+@unittest.skipUnless(PROGRAM, "PELLICLE_PROGRAM is not set")
+class Spray(unittest.TestCase):
+    def run_case(self, place, *more):
+        command = [PROGRAM, "run", str(place / "case.yaml"), "--output", str(place / "results"), *more]
+        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        return json.loads((place / "results" / "summary.json").read_text(encoding="utf-8"))
+
+    def check(self, summary):
+        spray = summary["spray"]
+        for nozzle in [spray, *spray["nozzles"].values()]:
+            ends = sum(nozzle[key] for key in ("captured", "wall_loss", "overspray", "in_flight"))
+            self.assertAlmostEqual(ends, nozzle["injected"], delta=1e-13 * nozzle["injected"])
+        self.assertLess(summary["defects"]["water"], 1e-12)
+        self.assertLess(summary["defects"]["solids"], 1e-12)
+        self.assertLess(summary["defects"]["energy"], 1e-8)
+
+    def test_every_gram_at_every_stop(self):
+        with tempfile.TemporaryDirectory() as place:
+            place = Path(place)
+            (place / "case.yaml").write_text(CASE, encoding="utf-8")
+            summary = self.run_case(place, "--until", "1.5 ms")
+            self.check(summary)
+            for until in ("3 ms", "4.2 ms", "8 ms"):
+                summary = self.run_case(place, "--resume", "--until", until)
+                self.check(summary)
+            spray = summary["spray"]
+            # Half a parcel: pi/6 (30 um)^3 exp(4.5 ln(1.3)^2) 1050 kg/m3 x 20 = 4.06e-10 kg before the cut; 40 um, 10.
+            self.assertAlmostEqual(spray["nozzles"]["below"]["injected"], 5e-3 / 60 * 8e-3, delta=2.1e-10)
+            self.assertAlmostEqual(spray["nozzles"]["above"]["injected"], 2e-3 / 60 * 5e-3, delta=1.7e-10)
+            for key in ("captured", "wall_loss", "in_flight"):
+                self.assertGreater(spray[key], 0.01 * spray["injected"], key)
+            # Captured below, at most at the gas's 60 degC, from 20 degC: 0.8 * 4181 + 0.2 * 1300 J/kg/K.
+            self.assertGreater(spray["free_heat"], 0)
+            self.assertLess(spray["free_heat"], spray["captured"] * 0.9 * 4181 * 40.1)
+
+    def test_without_gas_too(self):
+        text = CASE[:CASE.index("gas:\n")] + CASE[CASE.index("spray:\n"):]
+        with tempfile.TemporaryDirectory() as place:
+            place = Path(place)
+            (place / "case.yaml").write_text(text, encoding="utf-8")
+            summary = self.run_case(place)
+            self.assertGreater(summary["spray"]["captured"], 0)
+            self.check(summary)
+
+
+if __name__ == "__main__":
+    unittest.main()
