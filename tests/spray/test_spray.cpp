@@ -444,6 +444,23 @@ TEST(Spray, DropletsFollowTheGasOfTheirCell) {
   EXPECT_NEAR(first.velocity.z, 3 - fall, 1e-3 * fall);
 }
 
+TEST(Spray, GasIsThatOfTheCellOnTheDropletsOwnSideOfAThinWall) {
+  // Two cells along x, 0 to 1 and 1 to 2; a thin wall at x = 0.75 leaves the right end of the first cell to the second.
+  ParcelGas gas;
+  gas.grid = coupling::GridLocator(CartesianGrid(Box{{0, 0, 0}, {2, 1, 1}}, {2, 1, 1}));
+  EXPECT_EQ(gas.cell_of({0.9, 0.5, 0.5}), 0);
+  gas.cut.volume = DeviceArray<Real>("tests::spray::volume", 2);
+  gas.cut.nearest_open = DeviceArray<Index>("tests::spray::nearest_open", 2);
+  gas.cut.walls_begin = DeviceArray<Index>("tests::spray::walls_begin", 3);
+  gas.cut.walls = DeviceArray<coupling::ThinWall>("tests::spray::walls", 1);
+  gas.cut.nearest_open(1) = 1;
+  gas.cut.walls_begin(1) = gas.cut.walls_begin(2) = 1;
+  gas.cut.walls(0) = {{0.75, 0, 0}, {-1, 0, 0}, 1};
+  EXPECT_EQ(gas.cell_of({0.7, 0.5, 0.5}), 0);
+  EXPECT_EQ(gas.cell_of({0.9, 0.5, 0.5}), 1);
+  EXPECT_EQ(gas.cell_of({1.1, 0.5, 0.5}), 1);
+}
+
 TEST(Spray, CapturedDropletsMixWithTheParticleAtTheGasTemperature) {
   const Real radius = 0.2e-3;
   Nozzle nozzle = needle({0.002, 0.01, 0.01}, {1, 0, 0}, 50);
