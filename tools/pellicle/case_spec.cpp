@@ -82,11 +82,11 @@ CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {
 
 bool CaseSpec::follows(std::string_view quantity) const {
   const bool warm = heat.has_value();
-  constexpr bool spray = false;
+  const bool sprayed = !spray.empty();
   if (quantity == "particle_temperature" || quantity == "particle_temperature_mean") return warm;
-  if (quantity == "hits" || quantity == "first_hit_time" || quantity == "last_hit_time") return spray;
+  if (quantity == "hits" || quantity == "first_hit_time" || quantity == "last_hit_time") return sprayed;
   if (quantity == "film_liquid" || quantity == "film_solids" || quantity == "coating_thickness") {
-    return warm || spray;
+    return warm || sprayed;
   }
   return true;
 }
