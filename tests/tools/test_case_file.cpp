@@ -224,10 +224,6 @@ TEST(CaseErrors, EveryOneSaysWhereWhatAndWhatIsAllowed) {
   EXPECT_EQ(count, 5);
 }
 
-TEST(CaseErrors, PlannedSectionsAreUnknown) {
-  EXPECT_EQ(bed_errors("spray=[]").substr(0, 20), "--set: spray: unknow");
-}
-
 TEST(CaseErrors, MissingKeys) {
   EXPECT_EQ(errors("title: x\n", {}),
             "c.yaml:1: domain: missing; a section\nc.yaml:1: time: missing; a section");
