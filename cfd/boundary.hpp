@@ -24,11 +24,12 @@ inline bool is_max(Side side) { return static_cast<int>(side) % 2 == 1; }
 /// Name of a side in the case file.
 std::string_view name_of(Side side);
 
-/// Gas comes in at right angles to the side, with void fraction 1 in the plane of the inlet.
+/// Gas comes in at right angles to the side or the wall, with void fraction 1 in the plane of the inlet.
 struct Inlet {
-  std::optional<Real> velocity;   ///< superficial, inward [m/s]; exactly one of the two is set
-  std::optional<Real> flow_rate;  ///< spread uniformly over the inlet's area [m3/s]
-  Real share{1};                  ///< of the flow rate that comes through this inlet
+  std::optional<Real> velocity;     ///< superficial, inward [m/s]; exactly one of the three is set
+  std::optional<Real> flow_rate;    ///< spread uniformly over the inlet's area [m3/s]
+  Real share{1};                    ///< of the flow rate that comes through this inlet
+  std::optional<Real> mass_flow{};  ///< likewise, at the density of the gas that comes in [kg/s]
 };
 /// Gas leaves at a given pressure. Gas that comes back in has that pressure as its stagnation pressure.
 struct Outlet {
@@ -60,7 +61,9 @@ struct BoundaryPatch {
   std::array<ScalarBoundary, scalar_count>
       scalars{};                     ///< what scalars meet here; of use where they are solved
   std::optional<DiscRegion> disc{};  ///< the part of the side inside this disc, in place of a box
-  InletTurbulence turbulence{};      ///< of an inlet; of use with a model of turbulence
+  std::optional<std::string>
+      wall{};                    ///< name of a surface within the domain that it is, in place of the side
+  InletTurbulence turbulence{};  ///< of an inlet; of use with a model of turbulence
 };
 
 }  // namespace pellicle::cfd

@@ -30,15 +30,29 @@ std::array<int, 2> plane_axes(int axis) {
 
 void check_values(const BoundaryPatch& patch) {
   if (const auto* inlet = std::get_if<Inlet>(&patch.kind)) {
-    if (inlet->velocity.has_value() == inlet->flow_rate.has_value()) {
-      refuse(patch, "is an inlet; allowed: exactly one of velocity and flow_rate");
+    if (int{inlet->velocity.has_value()} + int{inlet->flow_rate.has_value()} +
+            int{inlet->mass_flow.has_value()} !=
+        1) {
+      refuse(patch, "is an inlet; allowed: exactly one of velocity, flow_rate and mass_flow");
     }
-    if (!std::isfinite(inlet->velocity.value_or(0)) || !std::isfinite(inlet->flow_rate.value_or(0))) {
+    if (!std::isfinite(inlet->velocity.value_or(0)) || !std::isfinite(inlet->flow_rate.value_or(0)) ||
+        !std::isfinite(inlet->mass_flow.value_or(0))) {
       refuse(patch, "has an inflow that is no finite number; allowed: a number");
     }
   }
+  const bool slips =
+      std::holds_alternative<FreeSlip>(patch.kind) || std::holds_alternative<Symmetry>(patch.kind);
+  if (patch.wall && (slips || patch.region || patch.disc)) {
+    refuse(patch,
+           fmt::format("is the whole of wall '{}'; allowed: an inlet, an outlet or, with a temperature, a "
+                       "wall, without region",
+                       *patch.wall));
+  }
   if (const auto* wall = std::get_if<NoSlip>(&patch.kind)) {
     if (!std::isfinite(norm(wall->velocity))) refuse(patch, "has a velocity that is no finite number");
+    if (patch.wall && norm(wall->velocity) != 0) {
+      refuse(patch, fmt::format("has a velocity, which wall '{}' itself has; allowed: none", *patch.wall));
+    }
     if (wall->velocity[axis_of(patch.on)] != 0) {
       refuse(patch, "moves at right angles to itself; allowed: a velocity in the plane of the wall");
     }
@@ -123,7 +137,7 @@ class SideCutter {
     const Real slack = 1e-9 * (box.max[axis_] - box.min[axis_]);
     for (std::size_t p = 0; p < patches_.size(); ++p) {
       const BoundaryPatch& patch = patches_[p];
-      if (patch.on != side_) continue;
+      if (patch.wall || patch.on != side_) continue;
       if (!patch.region && !patch.disc) {
         if (rest_ >= 0) {
           refuse(patch,
@@ -175,7 +189,7 @@ class SideCutter {
 
   void check_covered(const std::vector<Real>& covered) const {
     for (std::size_t p = 0; p < patches_.size(); ++p) {
-      if (patches_[p].on == side_ && covered[p] <= 0) {
+      if (!patches_[p].wall && patches_[p].on == side_ && covered[p] <= 0) {
         refuse(
             patches_[p],
             geometry_.is_cut
@@ -222,6 +236,63 @@ class SideCutter {
   int rest_ = -1;
 };
 
+// A surface within the domain through which gas comes in or leaves, or that has a temperature: all its pieces.
+void add_wall(Boundaries& result, const FlowGeometry& geometry, const std::vector<BoundaryPatch>& patches,
+              std::size_t p) {
+  const BoundaryPatch& patch = patches[p];
+  for (std::size_t other = 0; other < p; ++other) {
+    if (patches[other].wall == patch.wall) {
+      refuse(patch, fmt::format("is wall '{}', as boundary '{}' is; allowed: one boundary a wall",
+                                *patch.wall, patches[other].name));
+    }
+  }
+  const auto named = std::find_if(geometry.surfaces.begin(), geometry.surfaces.end(),
+                                  [&](const ImmersedSurface& s) { return s.name == *patch.wall; });
+  if (named == geometry.surfaces.end()) {
+    refuse(patch, fmt::format("is wall '{}', which the gas does not see; allowed: the name of a wall within "
+                              "the domain that is not `gas: open`",
+                              *patch.wall));
+  }
+  const auto surface = static_cast<std::int32_t>(named - geometry.surfaces.begin());
+  const bool opens = !std::holds_alternative<NoSlip>(patch.kind);
+  Real open_area = 0, thin_area = 0;
+  for (std::size_t s = 0; s < geometry.pieces.size(); ++s) {
+    const SurfacePiece& part = geometry.pieces[s];
+    if (part.surface != surface) continue;
+    // An edge of a solid can lie between two cells of gas like a thin wall: nothing comes through there.
+    if (part.beyond >= 0 && opens) {
+      thin_area += part.area;
+      continue;
+    }
+    if (opens && norm(part.normal) == 0) continue;
+    open_area += part.area;
+    BoundaryPiece piece;
+    if (std::holds_alternative<Inlet>(patch.kind)) piece.kind = PieceKind::inlet;
+    if (std::holds_alternative<Outlet>(patch.kind)) piece.kind = PieceKind::outlet;
+    piece.patch = static_cast<int>(p);
+    piece.cell = part.cell;
+    piece.area = part.area;
+    piece.half_width = part.distance;
+    piece.surface_piece = static_cast<std::int32_t>(s);
+    piece.normal = part.normal;
+    if (const auto* outlet = std::get_if<Outlet>(&patch.kind)) piece.pressure = outlet->pressure;
+    result.pieces.push_back(piece);
+    if (!opens) continue;
+    result.open_pieces.resize(geometry.pieces.size(), 0);
+    result.open_pieces[s] = 1;
+  }
+  if (thin_area > open_area) {
+    refuse(patch,
+           fmt::format("is wall '{}', which has gas on both sides; allowed: a wall with gas on one side, "
+                       "such as a block",
+                       *patch.wall));
+  }
+  if (!(open_area > 0)) {
+    refuse(patch, fmt::format("is wall '{}', which the gas does not touch; allowed: a wall at the gas",
+                              *patch.wall));
+  }
+}
+
 // A flow rate becomes a velocity over the area that the inlet was found to have. Where walls cut cells that area differs a
 // little from the region's own: the flow of a given velocity is that through the region.
 void set_inlet_velocities(Boundaries& result, const std::vector<BoundaryPatch>& patches, bool is_cut,
@@ -247,9 +318,13 @@ void set_inlet_velocities(Boundaries& result, const std::vector<BoundaryPatch>& 
     if (piece.kind != PieceKind::inlet) continue;
     const auto p = static_cast<std::size_t>(piece.patch);
     const auto& inlet = std::get<Inlet>(patches[p].kind);
-    Real inward = inlet.velocity ? *inlet.velocity : inlet.share * *inlet.flow_rate / area[p];
+    Real inward = inlet.velocity ? *inlet.velocity : inlet.share * inlet.flow_rate.value_or(0) / area[p];
     if (inlet.velocity && is_cut && region_areas[p] > 0) inward *= region_areas[p] / area[p];
-    piece.velocity[piece.axis] = -piece.outward * inward;
+    if (piece.is_immersed()) {
+      piece.velocity = inward * piece.normal;
+    } else {
+      piece.velocity[piece.axis] = -piece.outward * inward;
+    }
     net_inflow += inward * piece.area;
     gross += std::abs(inward) * piece.area;
     if (!an_inlet) an_inlet = &patches[p];
@@ -269,6 +344,7 @@ void set_boundary_values(Boundaries& result, const FlowGeometry& geometry) {
     }
   }
   for (const BoundaryPiece& piece : result.pieces) {
+    if (piece.is_immersed()) continue;
     const auto side = side_number(piece.axis, piece.outward);
     BoundaryValue& value = result.values[side][static_cast<std::size_t>(piece.place)];
     const Real share = piece.area / geometry.area[static_cast<std::size_t>(piece.axis)](piece.face);
@@ -290,7 +366,7 @@ Boundaries cut_boundaries(const FlowGeometry& geometry, const std::vector<Bounda
   Boundaries result;
   for (const BoundaryPatch& patch : patches) {
     check_values(patch);
-    if (geometry.stencil.periodic[static_cast<std::size_t>(axis_of(patch.on))]) {
+    if (!patch.wall && geometry.stencil.periodic[static_cast<std::size_t>(axis_of(patch.on))]) {
       refuse(patch,
              fmt::format("is on the {} side, where the domain is periodic; allowed: sides that are not",
                          name_of(patch.on)));
@@ -303,6 +379,9 @@ Boundaries cut_boundaries(const FlowGeometry& geometry, const std::vector<Bounda
     const SideCutter cutter(geometry, patches, side);
     cutter.cut(result);
     cutter.add_region_areas(region_areas);
+  }
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (patches[p].wall) add_wall(result, geometry, patches, p);
   }
   set_inlet_velocities(result, patches, geometry.is_cut, region_areas);
   set_boundary_values(result, geometry);

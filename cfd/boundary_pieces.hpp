@@ -1,6 +1,7 @@
 // The boundaries cut into pieces: each piece is the part of one cell's boundary face that one patch takes.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,16 @@ struct BoundaryPiece {
   Real half_width = 0;  ///< from the cell centre to the face [m]
   Vec3 velocity;        ///< of a wall, or superficial of an inlet [m/s]
   Real pressure = 0;    ///< at an outlet [Pa]
+  /// Of a boundary that is a surface within the domain: its piece there; -1: on a side. Then axis, outward, face and
+  /// place have no meaning, half_width is the distance from the middle of the cell's gas, and the normal leads into it.
+  std::int32_t surface_piece = -1;
+  Vec3 normal;
+
+  bool is_immersed() const { return surface_piece >= 0; }
+  /// Speed of an inlet's gas into the domain, superficial [m/s].
+  Real inward_speed() const { return is_immersed() ? dot(velocity, normal) : -outward * velocity[axis]; }
+  /// Component along the outward normal.
+  Real outward_part(const Vec3& v) const { return is_immersed() ? -dot(v, normal) : outward * v[axis]; }
 };
 
 /// Number of the side that lies across an axis, outward (+1 on a max side, -1 on a min side): 0 to 5.
@@ -43,6 +54,11 @@ struct Boundaries {
   std::array<std::vector<BoundaryValue>, 6> values;
   std::vector<std::string> patch_names;
   bool has_outlet = false;
+  std::vector<char> open_pieces;  ///< of the geometry's surfaces: 1 where gas passes; empty if nowhere
+
+  bool passes(std::size_t surface_piece) const {
+    return !open_pieces.empty() && open_pieces[surface_piece] != 0;
+  }
 };
 
 /// Cuts the sides of the grid along the patches' regions. Each face's pieces add up to its area exactly up to

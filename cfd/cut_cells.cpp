@@ -475,4 +475,25 @@ CutCells cut_cells(const CartesianGrid& grid, const std::vector<ImmersedSurface>
   return Cutter(grid, surfaces, seed).cut();
 }
 
+std::vector<int> group_points(const CartesianGrid& grid, const std::vector<ImmersedSurface>& surfaces,
+                              const std::vector<Vec3>& points) {
+  constexpr int unknown = -2;
+  std::vector<int> groups(points.size(), unknown);
+  const SurfaceLattice dry(grid, surfaces);
+  int count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (groups[i] != unknown) continue;
+    SurfaceLattice lattice = dry;
+    if (!lattice.wet_from(points[i])) {
+      groups[i] = -1;
+      continue;
+    }
+    for (std::size_t j = i; j < points.size(); ++j) {
+      if (groups[j] == unknown && (j == i || lattice.gas_reaches(points[j]))) groups[j] = count;
+    }
+    ++count;
+  }
+  return groups;
+}
+
 }  // namespace pellicle::cfd

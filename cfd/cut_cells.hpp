@@ -50,4 +50,9 @@ inline constexpr Real smallest_open_share = 1e-3;
 /// outward areas is zero. Throws std::invalid_argument if the seed lies on a surface.
 CutCells cut_cells(const CartesianGrid& grid, const std::vector<ImmersedSurface>& surfaces, const Vec3& seed);
 
+/// Which points [m] gas can spread between: of each point the number of its group, counted from 0 as they come; -1 on a
+/// surface.
+std::vector<int> group_points(const CartesianGrid& grid, const std::vector<ImmersedSurface>& surfaces,
+                              const std::vector<Vec3>& points);
+
 }  // namespace pellicle::cfd

@@ -121,6 +121,22 @@ Real FaceBalance::outlet_pressure(const GasFields& fields, std::size_t b) const 
   return piece.pressure - 0.5 * fields.piece_density[b] * inside * inside;
 }
 
+namespace {
+
+Vec3 vector_at(const HostArray<Real>& field, Index c, Index cells, Real over) {
+  return {field(c) / over, field(c + cells) / over, field(c + 2 * cells) / over};
+}
+
+// Of a coefficient that each component has its own of, what the velocity through the piece has.
+Real normal_part(const BoundaryPiece& piece, const HostArray<Real>& coefficient, Index cells) {
+  if (!piece.is_immersed()) return coefficient(piece.cell + piece.axis * cells);
+  const Vec3& n = piece.normal;
+  return n.x * n.x * coefficient(piece.cell) + n.y * n.y * coefficient(piece.cell + cells) +
+         n.z * n.z * coefficient(piece.cell + 2 * cells);
+}
+
+}  // namespace
+
 void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& momentum,
                                   const HostArray<Real>& influx, const HostArray<Real>& relaxation, Real dt,
                                   PressureMatrix& matrix) {
@@ -129,19 +145,19 @@ void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& mom
     const BoundaryPiece& piece = boundaries_.pieces[b];
     if (piece.kind != PieceKind::outlet) continue;
     const Index c = piece.cell;
-    const Index e = c + piece.axis * fields.cells;
     const Real eps = fields.void_fraction(c);
     const Real volume = geometry_.volume(c);
     const Real speed = fields.piece_flow[b] / piece.area;
-    const Real transport = momentum.own()(e) / (volume * eps);
-    const Real relaxed = relaxation(e) / (volume * eps);
+    const Real transport = normal_part(piece, momentum.own(), fields.cells) / (volume * eps);
+    const Real relaxed = normal_part(piece, relaxation, fields.cells) / (volume * eps);
     const Real rho = fields.piece_density[b];
     const Real rho_old = fields.density_old(c);
     const Real braking = 0.5 * rho * std::max(-speed, Real{0}) / (eps * piece.half_width);
     const Real stiffness = rho_old * fields.void_fraction_old(c) / (dt * eps) +
                            fields.exchange_coefficient(c) / eps + relaxed + braking;
-    const Real outward_force = piece.outward * (fields.force(e) / eps + options_.body_force[piece.axis]);
-    const Real pull = piece.outward * influx(e) / volume +
+    const Real outward_force = piece.outward_part(vector_at(fields.force, c, fields.cells, eps)) +
+                               piece.outward_part(options_.body_force);
+    const Real pull = piece.outward_part(vector_at(influx, c, fields.cells, 1)) / volume +
                       rho_old * fields.piece_flow_old[b] / (piece.area * dt) + relaxed * speed +
                       eps * ((fields.pressure(c) - piece.pressure) / piece.half_width + outward_force);
     outlet_mobility_[b] = eps / (stiffness * piece.half_width);
@@ -154,10 +170,12 @@ void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& mom
 void set_boundary_velocities(const FlowGeometry& geometry, const Boundaries& boundaries,
                              const GasFields& fields) {
   for (const BoundaryPiece& piece : boundaries.pieces) {
+    if (piece.is_immersed()) continue;
     fields.superficial[static_cast<std::size_t>(piece.axis)](piece.face) = 0;
   }
   for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries.pieces[b];
+    if (piece.is_immersed()) continue;
     const auto a = static_cast<std::size_t>(piece.axis);
     fields.superficial[a](piece.face) += piece.outward * fields.piece_flow[b] / geometry.area[a](piece.face);
   }
@@ -173,7 +191,7 @@ void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) 
   // The change of each face's velocity goes where its inertial force will be computed anew.
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    inertial_[static_cast<std::size_t>(piece.axis)](piece.face) = 0;
+    if (!piece.is_immersed()) inertial_[static_cast<std::size_t>(piece.axis)](piece.face) = 0;
   }
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
@@ -181,6 +199,7 @@ void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) 
     const auto a = static_cast<std::size_t>(piece.axis);
     const Real flow = piece.area * outlet_mobility_[b] * change[piece.cell];
     fields.piece_flow[b] += flow;
+    if (piece.is_immersed()) continue;
     inertial_[a](piece.face) += piece.outward * flow / geometry_.area[a](piece.face);
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -212,13 +231,14 @@ void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) 
 void FaceBalance::set_boundary_inertia(const GasFields& fields) {
   const Stencil& s = geometry_.stencil;
   for (const BoundaryPiece& piece : boundaries_.pieces) {
+    if (piece.is_immersed()) continue;
     const auto a = static_cast<std::size_t>(piece.axis);
     const Index other = piece.face - static_cast<Index>(piece.outward) * s.face_step(piece.axis);
     inertial_[a](piece.face) = s.n[piece.axis] > 1 ? inertial_[a](other) : 0;
   }
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    if (piece.kind != PieceKind::outlet && piece.kind != PieceKind::slip) continue;
+    if (piece.is_immersed() || (piece.kind != PieceKind::outlet && piece.kind != PieceKind::slip)) continue;
     const auto a = static_cast<std::size_t>(piece.axis);
     const Real share = piece.area / geometry_.area[a](piece.face);
     const Index other = piece.face - static_cast<Index>(piece.outward) * s.face_step(piece.axis);

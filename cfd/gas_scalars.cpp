@@ -10,6 +10,15 @@
 
 namespace pellicle::cfd {
 
+Real incoming_density(const BoundaryPatch& patch, const GasOptions& options) {
+  if (options.density_law == DensityLaw::constant) return options.density;
+  const auto value = [&](Scalar scalar) {
+    const auto* known = std::get_if<GivenValue>(&patch.scalars[index_of(scalar)]);
+    return known ? known->value : 0;
+  };
+  return ideal_gas_density(options.reference_pressure, value(Scalar::temperature), value(Scalar::moisture));
+}
+
 GasScalars::GasScalars(const FlowGeometry& geometry, const Boundaries& boundaries,
                        const std::vector<BoundaryPatch>& patches, const GasOptions& options)
     : geometry_(geometry), boundaries_(boundaries), options_(options) {
@@ -34,14 +43,9 @@ GasScalars::GasScalars(const FlowGeometry& geometry, const Boundaries& boundarie
   for (const BoundaryPiece& piece : boundaries.pieces) {
     auto& density = given_density_.emplace_back();
     if (piece.kind != PieceKind::inlet || !has_varying_density()) continue;
-    if (!(piece.outward * piece.velocity[piece.axis] < 0)) continue;
-    const auto& given = patches[static_cast<std::size_t>(piece.patch)].scalars;
-    const auto value = [&](Scalar scalar) {
-      const auto* known = std::get_if<GivenValue>(&given[index_of(scalar)]);
-      return known ? known->value : 0;
-    };
-    density =
-        ideal_gas_density(options.reference_pressure, value(Scalar::temperature), value(Scalar::moisture));
+    if (piece.inward_speed() > 0) {
+      density = incoming_density(patches[static_cast<std::size_t>(piece.patch)], options);
+    }
   }
 }
 

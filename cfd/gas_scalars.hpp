@@ -10,6 +10,9 @@
 
 namespace pellicle::cfd {
 
+/// Density of the gas that an inlet brings [kg/m3].
+Real incoming_density(const BoundaryPatch& patch, const GasOptions& options);
+
 class GasScalars {
  public:
   /// Throws InputError for laws that need a temperature where none is solved, and as ScalarTransport does.

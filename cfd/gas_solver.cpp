@@ -28,6 +28,17 @@ void check_options(const GasOptions& o) {
   if (o.solver.max_outer_iterations < 1) refuse("solver.max_outer_iterations is too small; allowed: >= 1");
 }
 
+// A mass flow is a flow rate at the density of the gas that comes in.
+std::vector<BoundaryPatch> with_flow_rates(std::vector<BoundaryPatch> patches, const GasOptions& options) {
+  for (BoundaryPatch& patch : patches) {
+    auto* inlet = std::get_if<Inlet>(&patch.kind);
+    if (!inlet || !inlet->mass_flow || inlet->velocity || inlet->flow_rate) continue;
+    inlet->flow_rate = *inlet->mass_flow / incoming_density(patch, options);
+    inlet->mass_flow.reset();
+  }
+  return patches;
+}
+
 }  // namespace
 
 ParticleExchange make_empty_exchange(const CartesianGrid& grid) {
@@ -43,7 +54,7 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
                       std::vector<BoundaryPatch> boundary_patches, const ImmersedGeometry& immersed)
     : geometry(grid, immersed),
       options(gas_options),
-      patches(std::move(boundary_patches)),
+      patches(with_flow_rates(std::move(boundary_patches), options)),
       boundaries(cut_boundaries(geometry, patches)),
       fields(geometry, boundaries.pieces.size(), options.turbulence.has_value()),
       momentum(geometry, boundaries, options),
@@ -111,12 +122,14 @@ void GasSolver::Impl::initialise(const HostArray<Real>& given_void_fraction) {
   }
   for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries.pieces[b];
-    Real speed = 0;
-    if (piece.kind == PieceKind::inlet) speed = piece.velocity[piece.axis];
+    Real speed = 0;  // outward
+    if (piece.kind == PieceKind::inlet) speed = -piece.inward_speed();
     if (piece.kind == PieceKind::outlet) {
-      speed = void_fraction(piece.cell) * fields.velocity(piece.cell + piece.axis * n);
+      const Index c = piece.cell;
+      speed = void_fraction(c) *
+              piece.outward_part({fields.velocity(c), fields.velocity(c + n), fields.velocity(c + 2 * n)});
     }
-    fields.piece_flow[b] = piece.outward * speed * piece.area;
+    fields.piece_flow[b] = speed * piece.area;
   }
   set_boundary_velocities(geometry, boundaries, fields);
   update_mass_flux();
@@ -449,7 +462,9 @@ void GasSolver::Impl::add_to_balance(Real dt, const ParticleExchange& exchange) 
     const BoundaryPiece& piece = boundaries.pieces[b];
     convected += dt * momentum.convected_inflow(fields, b);
     sheared += dt * momentum.shear_force(fields, b);
-    pressed[piece.axis] -= dt * piece.outward * piece.area * faces.boundary_pressure(fields, b);
+    if (!piece.is_immersed()) {
+      pressed[piece.axis] -= dt * piece.outward * piece.area * faces.boundary_pressure(fields, b);
+    }
     if (piece.patch < 0) continue;
     PatchBalance& patch = balance.patches[static_cast<std::size_t>(piece.patch)];
     const Real out = fields.piece_density[b] * fields.piece_flow[b] * dt;
@@ -603,23 +618,23 @@ const CartesianGrid& GasSolver::grid() const { return impl_->geometry.grid; }
 const FlowGeometry& GasSolver::geometry() const { return impl_->geometry; }
 const GasOptions& GasSolver::options() const { return impl_->options; }
 
-Vec3 GasSolver::surface_force(std::size_t surface) const {
+Vec3 GasSolver::surface_force(std::size_t surface) const { return surface_forces().at(surface); }
+
+std::vector<Vec3> GasSolver::surface_forces() const {
   const Impl& s = *impl_;
   const auto& pieces = s.geometry.pieces;
-  Vec3 total{};
+  std::vector<Vec3> total(s.geometry.surfaces.size());
   for (std::size_t first = 0; first < pieces.size();) {
     // The pressure on the surfaces of a cell is shared by their areas.
     std::size_t end = first;
-    Real own = 0;
     Real all = 0;
-    for (; end < pieces.size() && pieces[end].cell == pieces[first].cell; ++end) {
-      all += pieces[end].area;
-      if (static_cast<std::size_t>(pieces[end].surface) != surface) continue;
-      own += pieces[end].area;
-      total -= s.momentum.surface_shear(s.fields, end);
+    for (; end < pieces.size() && pieces[end].cell == pieces[first].cell; ++end) all += pieces[end].area;
+    const Vec3 pressure = s.faces.surface_pressure_force(s.fields, pieces[first].cell);
+    for (; first < end; ++first) {
+      Vec3& own = total[static_cast<std::size_t>(pieces[first].surface)];
+      own -= s.momentum.surface_shear(s.fields, first);
+      if (all > 0) own -= (pieces[first].area / all) * pressure;
     }
-    if (own > 0) total -= (own / all) * s.faces.surface_pressure_force(s.fields, pieces[first].cell);
-    first = end;
   }
   return total;
 }
@@ -641,8 +656,11 @@ Real GasSolver::patch_pressure(const std::string& name) const {
   for (std::size_t b = 0; b < s.boundaries.pieces.size(); ++b) {
     const BoundaryPiece& piece = s.boundaries.pieces[b];
     if (piece.patch != patch) continue;
-    force += piece.area *
-             (piece.kind == PieceKind::outlet ? piece.pressure : s.faces.boundary_pressure(s.fields, b));
+    Real pressure = piece.pressure;
+    if (piece.kind != PieceKind::outlet) {
+      pressure = piece.is_immersed() ? s.fields.pressure(piece.cell) : s.faces.boundary_pressure(s.fields, b);
+    }
+    force += piece.area * pressure;
     area += piece.area;
   }
   return force / area;

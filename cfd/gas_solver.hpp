@@ -73,6 +73,8 @@ class GasSolver {
   const FlowGeometry& geometry() const;
   /// Force of the gas on a surface within the domain [N], by its number: pressure and viscous stress of the last step.
   Vec3 surface_force(std::size_t surface) const;
+  /// Of all surfaces, in their order.
+  std::vector<Vec3> surface_forces() const;
   const GasOptions& options() const;
   const GasState& state() const;
   const GasBalance& balance() const;

@@ -63,7 +63,7 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
   for (const SurfacePiece& piece : geometry.pieces) {
     const ImmersedSurface& surface = geometry.surfaces[static_cast<std::size_t>(piece.surface)];
     auto& largest = piece_of_[static_cast<std::size_t>(piece.cell)];
-    if (surface.sticks &&
+    if (surface.sticks && !boundaries.passes(surface_velocity_.size()) &&
         (largest < 0 || piece.area > geometry.pieces[static_cast<std::size_t>(largest)].area)) {
       largest = static_cast<std::int32_t>(surface_velocity_.size());
     }
@@ -102,7 +102,7 @@ void MomentumEquation::prepare(const GasFields& fields, Real dt) {
   // Where nothing slips nothing changes along the boundary, and continuity alone gives the normal gradient of eps u.
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    if (piece.kind != PieceKind::no_slip && piece.kind != PieceKind::inlet) continue;
+    if (piece.is_immersed() || (piece.kind != PieceKind::no_slip && piece.kind != PieceKind::inlet)) continue;
     const Index c = piece.cell;
     const Real thinning = fields.density_old(c) / fields.density(c);
     const Real growth = (fields.void_fraction(c) - thinning * fields.void_fraction_old(c)) / dt -
@@ -201,6 +201,10 @@ PieceTerms piece_terms(const GasFields& fields, const BoundaryPiece& piece, std:
   if (piece.kind == PieceKind::inlet || piece.kind == PieceKind::outlet) {
     terms.inflow = fields.piece_density[b] * std::max(-flow, Real{0});
     // The superficial velocity is the same on both sides of the face; inside, the gas has eps of the room.
+    if (piece.is_immersed()) {
+      terms.brought = (-flow / (piece.area * eps)) * piece.normal;
+      return terms;
+    }
     terms.brought[piece.axis] = piece.outward * flow / (piece.area * eps);
   }
   if (piece.kind == PieceKind::inlet || piece.kind == PieceKind::no_slip) {
@@ -221,6 +225,13 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
     const PieceTerms terms = piece_terms(fields, piece, b);
+    if (piece.is_immersed()) {
+      for (int a = 0; a < 3; ++a) {
+        own_(piece.cell + a * n) += terms.inflow;
+        source_(piece.cell + a * n) += terms.inflow * terms.brought[a];
+      }
+      continue;
+    }
     for (int a = 0; a < 3; ++a) {
       const Index c = piece.cell + a * n;
       const Real shear = a == piece.axis ? 0 : terms.shear;
@@ -247,7 +258,7 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
 // square of the distance, as continuity wants it to, and the components stay apart from each other.
 Real MomentumEquation::surface_conductance(const GasFields& fields, std::size_t b) const {
   const SurfacePiece& piece = geometry_.pieces[b];
-  if (!geometry_.surfaces[static_cast<std::size_t>(piece.surface)].sticks) return 0;
+  if (!geometry_.surfaces[static_cast<std::size_t>(piece.surface)].sticks || boundaries_.passes(b)) return 0;
   const Real viscosity =
       fields.surface_layer.empty() ? fields.viscosity(piece.cell) : fields.surface_layer[b].viscosity;
   return viscosity * fields.void_fraction(piece.cell) * piece.area / piece.distance;
@@ -312,6 +323,7 @@ Vec3 MomentumEquation::convected_inflow(const GasFields& fields, std::size_t b) 
 
 Vec3 MomentumEquation::shear_force(const GasFields& fields, std::size_t b) const {
   const BoundaryPiece& piece = boundaries_.pieces[b];
+  if (piece.is_immersed()) return {};
   const PieceTerms terms = piece_terms(fields, piece, b);
   Vec3 result;
   for (int a = 0; a < 3; ++a) {

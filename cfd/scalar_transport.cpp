@@ -78,7 +78,7 @@ void ScalarTransport::check(const std::vector<ScalarBoundary>& patches) const {
   }
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    const bool inward = piece.kind == PieceKind::inlet && piece.outward * piece.velocity[piece.axis] < 0;
+    const bool inward = piece.kind == PieceKind::inlet && piece.inward_speed() > 0;
     if (inward && !std::holds_alternative<GivenValue>(piece_conditions_[b])) {
       refuse(fmt::format("inlet '{}' brings gas of no given value; allowed: a value",
                          boundaries_.patch_names[static_cast<std::size_t>(piece.patch)]));
@@ -122,8 +122,11 @@ Real ScalarTransport::conductivity(const GasFields& fields, Index c) const {
 // Of the gas between a boundary and the centre of its cell.
 Real ScalarTransport::half_conductance(const GasFields& fields, std::size_t b) const {
   const BoundaryPiece& piece = boundaries_.pieces[b];
-  if (!fields.piece_layer.empty() && fields.piece_layer[b].scale > 0) {
-    return layer_coefficient(fields, piece.cell, fields.piece_layer[b]) * piece.area;
+  if (!fields.piece_layer.empty()) {
+    const WallLayer& layer = piece.is_immersed()
+                                 ? fields.surface_layer[static_cast<std::size_t>(piece.surface_piece)]
+                                 : fields.piece_layer[b];
+    if (layer.scale > 0) return layer_coefficient(fields, piece.cell, layer) * piece.area;
   }
   return conductivity(fields, piece.cell) * piece.area / piece.half_width;
 }
@@ -185,6 +188,7 @@ void ScalarTransport::set_boundary_values(const GasFields& fields) {
   for (auto& side : boundary_values_) std::fill(side.begin(), side.end(), FaceOfBoundary{});
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
+    if (piece.is_immersed()) continue;
     const PieceTerms terms = piece_terms(fields, b);
     const auto side = side_number(piece.axis, piece.outward);
     const Real share = piece.area / geometry_.area[static_cast<std::size_t>(piece.axis)](piece.face);

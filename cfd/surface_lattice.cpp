@@ -117,22 +117,35 @@ bool SurfaceLattice::reaches(const Vec3& seed, const std::array<std::size_t, 3>&
   return true;
 }
 
-bool SurfaceLattice::wet_from(const Vec3& seed) {
+// Of the part of the lattice that a point lies in.
+std::array<std::array<std::size_t, 3>, 8> SurfaceLattice::corners_around(const Vec3& point) const {
   std::array<std::size_t, 3> low{};
   for (std::size_t a = 0; a < 3; ++a) {
     const auto& along = at_[a];
-    const auto next = std::upper_bound(along.begin(), along.end(), seed[static_cast<int>(a)]);
+    const auto next = std::upper_bound(along.begin(), along.end(), point[static_cast<int>(a)]);
     const auto i = static_cast<std::size_t>(next - along.begin());
     low[a] = i == 0 ? 0 : std::min(i - 1, along.size() - 2);
   }
+  std::array<std::array<std::size_t, 3>, 8> corners{};
   for (std::size_t corner = 0; corner < 8; ++corner) {
-    const std::array<std::size_t, 3> to{low[0] + (corner & 1), low[1] + ((corner >> 1) & 1),
-                                        low[2] + (corner >> 2)};
+    corners[corner] = {low[0] + (corner & 1), low[1] + ((corner >> 1) & 1), low[2] + (corner >> 2)};
+  }
+  return corners;
+}
+
+bool SurfaceLattice::wet_from(const Vec3& seed) {
+  for (const auto& to : corners_around(seed)) {
     if (!reaches(seed, to)) continue;
     spread(point(to[0], to[1], to[2]));
     return true;
   }
   return false;
+}
+
+bool SurfaceLattice::gas_reaches(const Vec3& from) const {
+  const auto corners = corners_around(from);
+  return std::any_of(corners.begin(), corners.end(),
+                     [&](const auto& to) { return wet(point(to[0], to[1], to[2])) && reaches(from, to); });
 }
 
 void SurfaceLattice::spread(std::size_t start) {

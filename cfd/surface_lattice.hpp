@@ -32,6 +32,9 @@ class SurfaceLattice {
   /// Wets what the gas reaches from a point [m]. Returns false if that point has no way to a point of the lattice.
   bool wet_from(const Vec3& seed);
 
+  /// Whether the gas that has spread reaches a point [m] from the lattice.
+  bool gas_reaches(const Vec3& point) const;
+
   std::array<std::size_t, 3> size() const { return size_; }
   std::size_t point(std::size_t i, std::size_t j, std::size_t k) const {
     return i + size_[0] * (j + size_[1] * k);
@@ -47,6 +50,7 @@ class SurfaceLattice {
   bool clear(int axis, const Vec3& from, Real to) const;
   bool reaches(const Vec3& seed, const std::array<std::size_t, 3>& corner) const;
   void spread(std::size_t start);
+  std::array<std::array<std::size_t, 3>, 8> corners_around(const Vec3& point) const;
 
   const std::vector<ImmersedSurface>& surfaces_;
   std::array<bool, 3> periodic_;

@@ -35,7 +35,7 @@ Incoming find_incoming(const Boundaries& boundaries, const std::vector<BoundaryP
   for (const BoundaryPiece& piece : boundaries.pieces) {
     if (piece.kind != PieceKind::inlet) continue;
     area[static_cast<std::size_t>(piece.patch)] += piece.area;
-    flow[static_cast<std::size_t>(piece.patch)] += piece.area * std::abs(piece.velocity[piece.axis]);
+    flow[static_cast<std::size_t>(piece.patch)] += piece.area * std::abs(piece.inward_speed());
   }
   Incoming incoming;
   for (std::size_t p = 0; p < patches.size(); ++p) {
@@ -110,7 +110,7 @@ KEpsilon::KEpsilon(const FlowGeometry& geometry, const Boundaries& boundaries,
 void KEpsilon::collect_walls() {
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    if (piece.kind != PieceKind::no_slip) continue;
+    if (piece.kind != PieceKind::no_slip || piece.is_immersed()) continue;
     WallPiece wall{piece.cell, b, false, piece.area, piece.half_width, piece.half_width, {}, piece.velocity};
     wall.normal[piece.axis] = -piece.outward;
     walls_.push_back(wall);
@@ -118,7 +118,7 @@ void KEpsilon::collect_walls() {
   for (std::size_t b = 0; b < geometry_.pieces.size(); ++b) {
     const SurfacePiece& piece = geometry_.pieces[b];
     const ImmersedSurface& surface = geometry_.surfaces[static_cast<std::size_t>(piece.surface)];
-    if (!surface.sticks) continue;
+    if (!surface.sticks || boundaries_.passes(b)) continue;
     const Index3 at = geometry_.grid.coordinates(piece.cell);
     const Real half = 0.5 * std::min({geometry_.grid.width(0, at.x), geometry_.grid.width(1, at.y),
                                       geometry_.grid.width(2, at.z)});

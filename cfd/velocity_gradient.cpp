@@ -106,7 +106,7 @@ void add_transposed_stress(const FlowGeometry& geometry, const Boundaries& bound
   for (std::size_t k = 0; k < boundaries.pieces.size(); ++k) {
     const BoundaryPiece& piece = boundaries.pieces[k];
     piece_force[k] = {};
-    if (piece.kind != PieceKind::outlet && piece.kind != PieceKind::slip) continue;
+    if (piece.is_immersed() || (piece.kind != PieceKind::outlet && piece.kind != PieceKind::slip)) continue;
     const Index c = piece.cell;
     const Real pull = piece.outward * fields.viscosity(c) * fields.void_fraction(c) * piece.area;
     for (int b = 0; b < 3; ++b) {

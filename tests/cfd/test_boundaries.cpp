@@ -102,9 +102,10 @@ TEST(Boundaries, MessagesSayWhereAndWhat) {
   expect({{"a", Side::z_min, {}, Inlet{1.0, {}}, here}, {"b", Side::z_min, {}, NoSlip{}, here}, top},
          "takes the rest of the bottom side, as 'a' does", grid_of_7);
   expect({{"a", Side::z_min, {}, Inlet{1.0, {}}, here}}, "has no way out", grid_of_7);
-  expect({{"a", Side::z_min, {}, Inlet{1.0, 2.0}, here}, top}, "exactly one of velocity and flow_rate",
+  expect({{"a", Side::z_min, {}, Inlet{1.0, 2.0}, here}, top},
+         "exactly one of velocity, flow_rate and mass_flow", grid_of_7);
+  expect({{"a", Side::z_min, {}, Inlet{}, here}, top}, "exactly one of velocity, flow_rate and mass_flow",
          grid_of_7);
-  expect({{"a", Side::z_min, {}, Inlet{}, here}, top}, "exactly one of velocity and flow_rate", grid_of_7);
   expect({{"a", Side::x_min, {}, NoSlip{{1, 0, 0}}, here}}, "moves at right angles", grid_of_7);
   const CartesianGrid periodic(grid_of_7.box(), grid_of_7.cells(), {true, false, false});
   expect({{"a", Side::x_max, {}, Outlet{0}, here}}, "where the domain is periodic", periodic);
