@@ -112,6 +112,17 @@ TEST(Spray, AParticleThatComesTowardsADropletMeetsItWhenItShould) {
   }
 }
 
+TEST(Spray, ADropletMeetsAParticleWithinTheMoveThatItIsBornIn) {
+  // Born 5 us after the beginning, at 1 m/s, before a bead that comes at -5 m/s from 40 um: 40 um - 5 t = t - 5 us.
+  dem::ParticleSeed bead;
+  bead.radius = 1e-3;
+  bead.position = {0.005 + bead.radius + 15e-6 + 40e-6, 0.01, 0.01};
+  bead.velocity = {-5, 0, 0};
+  Rig rig(open_box({0.02, 0.02, 0.02}), {bead}, spray_of({needle({0.005, 0.01, 0.01}, {1, 0, 0}, 1)}));
+  rig.outer_step();
+  EXPECT_NEAR(rig.records()[0].first_hit, 7.5e-6, 1e-13);
+}
+
 TEST(Spray, OfTwoAtTheSameMomentTheLowerIdIsHit) {
   // Mirror images about the path, the one with the lower id at either side.
   const Real radius = 1e-3;
