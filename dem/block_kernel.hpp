@@ -38,6 +38,9 @@ struct PairWindow {
   alignas(64) std::int32_t touching_i[room], touching_j[room], parameters[room];
   lanes::Mask8 touches[pair_window / 8];  // list entries, eight a group
   int count = 0;
+  int within = 0;     // of them, pairs within the block
+  Index rows = 1;     // that the entries are in
+  bool dense = true;  // most rows of the window before had pairs that touch
 };
 
 /// A block of particles a work item: scan rows, gather touching pairs, run the laws over them in vectors, add up.
@@ -53,64 +56,60 @@ struct BlockContactKernel {
   Laws laws;
 
   void operator()(const Index block) const {
-    // Force, torque, contacts: what particles get from pairs in their own rows, and in those of others. The last places take
-    // what belongs to other blocks, several so that one addition need not wait for another.
-    alignas(64) Sum own[contact_block + 1];
-    alignas(64) Sum others[contact_block + 8];
     Window window;
     BlockReport report = start_report(out.report(block));
     const Index begin = block * contact_block;
     const Index end = std::min(begin + contact_block, in.particles.count);
-    for (Index k = 0; k < end - begin; ++k) own[k] = others[k] = Sum{};
-    own[contact_block] = Sum{};
-    for (int k = 0; k < 8; ++k) others[contact_block + k] = Sum{};
+    auto* const sums = reinterpret_cast<Sum*>(out.load.data() + begin);
+    for (Index k = 0; k < end - begin; ++k) sums[k] = Sum{};
+    // What belongs to other blocks, in several places so that one addition need not wait for another.
+    alignas(64) Sum elsewhere[16] = {};
     const std::int32_t last = in.list.offset(end);
-    Index p = begin;
+    Index asked = 0;
     for (std::int32_t slot = in.list.offset(begin); slot < last; slot += pair_window) {
       const std::int32_t stop = std::min(slot + pair_window, last);
-      std::uint16_t owner[pair_window + 32];
-      const Index first = p;
-      p = find_owners(begin, p, slot, stop, owner);
-      prefetch_next_block(first, p);
-      prefetch_others(begin, stop, std::min(stop + pair_window, last));
-      gather_touching(begin, slot, stop, owner, window);
+      const Index reached = stop < last ? in.list.owner(stop) : contact_block;
+      // In a gas of particles hardly any touch, and only their velocities are needed.
+      window.dense = 2 * window.count > window.rows;
+      window.rows = reached - asked;
+      prefetch_next_block(begin + asked, begin + reached, window.dense);
+      prefetch_others(begin, stop, std::min(stop + pair_window, last), window.dense);
+      asked = reached;
+      gather_touching(begin, slot, stop, window, report);
       if (window.count == 0) continue;
       gather_motion(window);
       find_forces(window, report);
-      add_forces(window, own, others);
+      add_forces(window, sums, elsewhere);
       if constexpr (remembers) put_back_springs(slot, stop, window);
     }
-    for (Index k = 0; k < end - begin; ++k) {
-      const Sum sum = own[k] + others[k];
-      const auto contacts = static_cast<std::int32_t>(sum[6]);
-      const Vec3 force{sum[0], sum[1], sum[2]};
-      report.touching += contacts;
-      if (in.particles.velocity_spin(begin + k).inverse_mass == 0) report.support_impulse += in.kick * force;
-      out.force(begin + k) = force;
-      out.torque(begin + k) = {sum[3], sum[4], sum[5]};
-      out.touching_new(begin + k) = contacts;
+    if (in.any_fixed) {
+      for (Index p = begin; p < end; ++p) {
+        if (in.particles.velocity_spin(p).inverse_mass == 0)
+          report.support_impulse += in.kick * out.load(p).force;
+      }
     }
     out.report(block) = report;
   }
 
  private:
-  using Sum = lanes::Real8;
+  using Sum = lanes::Real8;  // a ContactLoad
   static constexpr bool remembers = Laws::springs > 0;
   static constexpr int components = 3 * Laws::springs;
+  static constexpr int no_row = contact_block;
 
   /// Asks for as many particles of the next block as this window has. Rows meet their partners in an order that the
   /// processor cannot foresee, and beds of more than some ten thousand particles do not fit into its cache.
-  KOKKOS_FORCEINLINE_FUNCTION void prefetch_next_block(Index first, Index last) const {
+  KOKKOS_FORCEINLINE_FUNCTION void prefetch_next_block(Index first, Index last, bool dense) const {
     const Index from = std::min(first + contact_block, in.particles.count);
     const Index to = std::min(last + contact_block, in.particles.count);
     prefetch(in.particles.position_radius.data(), from, to);
-    prefetch(in.particles.velocity_spin.data(), from, to);
-    prefetch_to_write(out.force.data(), from, to);
-    prefetch_to_write(out.torque.data(), from, to);
+    if (dense) prefetch(in.particles.velocity_spin.data(), from, to);
+    prefetch_to_write(out.load.data(), from, to);
   }
 
   /// Asks for those partners of the next window that are in other blocks.
-  KOKKOS_FORCEINLINE_FUNCTION void prefetch_others(Index begin, std::int32_t slot, std::int32_t stop) const {
+  KOKKOS_FORCEINLINE_FUNCTION void prefetch_others(Index begin, std::int32_t slot, std::int32_t stop,
+                                                   bool dense) const {
     std::int32_t other[pair_window + 8];
     int n = 0;
     // A rest of fewer than eight has to do without.
@@ -122,46 +121,31 @@ struct BlockContactKernel {
     }
     for (int k = 0; k < n; ++k) {
       prefetch(in.particles.position_radius.data() + other[k]);
-      prefetch(in.particles.velocity_spin.data() + other[k]);
-    }
-  }
-
-  /// Whose rows the slots belong to, counted from the block's first particle. `p` is the particle of the first slot or one
-  /// before; returns that of the last.
-  Index find_owners(Index begin, Index p, std::int32_t slot, std::int32_t stop, std::uint16_t* owner) const {
-    const std::int32_t* const offset = in.list.offset.data();
-    for (std::int32_t s = slot;;) {
-      const std::int32_t row_end = std::min(offset[p + 1], stop);
-      // Rows are short: write a whole vector, and what is too much the next row writes over.
-      constexpr std::int32_t width = 16;
-      for (; s < row_end; s += width) {
-        for (std::int32_t k = 0; k < width; ++k) {
-          owner[s - slot + k] = static_cast<std::uint16_t>(p - begin);
-        }
-      }
-      s = row_end;
-      if (s >= stop) return p;
-      ++p;
+      if (dense) prefetch(in.particles.velocity_spin.data() + other[k]);
     }
   }
 
   /// Which of the entries touch, and where their partners are.
-  void gather_touching(Index begin, std::int32_t slot, std::int32_t stop, std::uint16_t* owner,
-                       Window& w) const {
+  void gather_touching(Index begin, std::int32_t slot, std::int32_t stop, Window& w,
+                       BlockReport& report) const {
     const std::int32_t entries = stop - slot;
     const std::int32_t* const partner = in.list.partner.data() + slot;
+    const std::uint16_t* const owner = in.list.owner.data() + slot;
     int n = 0;
+    w.within = 0;
     std::int32_t s = 0;
     for (; s + 8 <= entries; s += 8) n = test_eight(begin, slot + s, 8, partner + s, owner + s, w, s / 8, n);
     if (s < entries) {
       // The entries beyond are the next block's, or none.
       std::int32_t some[8];
+      std::uint16_t whose[8];
       for (std::int32_t k = 0; k < 8; ++k) {
         some[k] = partner[std::min(s + k, entries - 1)];
-        if (s + k >= entries) owner[s + k] = owner[entries - 1];
+        whose[k] = owner[std::min(s + k, entries - 1)];
       }
-      n = test_eight(begin, slot + s, entries - s, some, owner + s, w, s / 8, n);
+      n = test_eight(begin, slot + s, entries - s, some, whose, w, s / 8, n);
     }
+    report.touching += n + w.within;
     // Vectors are full: repeat the first pair.
     for (int k = n; n > 0 && k % 16 != 0; ++k) {
       w.dx[k] = w.dx[0];
@@ -172,11 +156,12 @@ struct BlockContactKernel {
       w.rj[k] = w.rj[0];
       w.i[k] = w.i[0];
       w.j[k] = w.j[0];
-      w.sum_of_i[k] = w.sum_of_j[k] = contact_block;
+      w.sum_of_i[k] = w.sum_of_j[k] = no_row;
       if constexpr (remembers) {
         for (int e = 0; e < components; ++e) w.spring[e][k] = 0;
       }
     }
+    w.sum_of_i[(n + 15) / 16 * 16] = no_row;
     w.count = n;
   }
 
@@ -212,8 +197,6 @@ struct BlockContactKernel {
     if constexpr (remembers) gather_springs(slot, valid, touches, w, group, n);
     // In a gas of particles hardly any touch.
     if (touches == 0) return n;
-    // For gather_motion.
-    for (int k = 0; k < 8; ++k) prefetch(in.particles.velocity_spin.data() + partner[k]);
     lanes::pack(touches, dx, w.dx + n);
     lanes::pack(touches, dy, w.dy + n);
     lanes::pack(touches, dz, w.dz + n);
@@ -224,15 +207,25 @@ struct BlockContactKernel {
     const auto j = lanes::load<lanes::Int8>(partner);
     // Outside the block, also below it, the unsigned difference is more than the last particle's.
     const auto local = reinterpret_cast<lanes::Unsigned8>(j - begin);
-    constexpr auto last = static_cast<std::uint32_t>(contact_block);
-    constexpr lanes::Unsigned8 outside{last,     last + 1, last + 2, last + 3,
-                                       last + 4, last + 5, last + 6, last + 7};
-    const auto of_j = reinterpret_cast<lanes::Int8>(local < outside ? local : outside);
+    constexpr auto last = static_cast<std::uint32_t>(no_row);
+    const auto of_j = reinterpret_cast<lanes::Int8>(local < last ? local : lanes::Unsigned8{} + last);
+    const int found = lanes::count(touches);
+    w.within += found - lanes::count(touches & lanes::outside(j, begin, begin + contact_block - 1));
     lanes::pack(touches, of_i, w.sum_of_i + n);
     lanes::pack(touches, of_i + begin, w.i + n);
     lanes::pack(touches, j, w.j + n);
     lanes::pack(touches, of_j, w.sum_of_j + n);
-    return n + lanes::count(touches);
+    // For gather_motion.
+    if (w.dense) {
+      for (int k = 0; k < 8; ++k) prefetch(in.particles.velocity_spin.data() + partner[k]);
+    } else {
+      // Beyond those found there is particle 0.
+      for (int k = n; k < n + 3; ++k) {
+        prefetch(in.particles.velocity_spin.data() + w.i[k]);
+        prefetch(in.particles.velocity_spin.data() + w.j[k]);
+      }
+    }
+    return n + found;
   }
 
   /// x, y, z, r of eight particles from rows of two each, k and k + 4 in row k.
@@ -402,13 +395,22 @@ struct BlockContactKernel {
   }
 
   /// Adds forces and torques to both particles of every pair, pairs in list order. Pairs of a row come one after the other:
-  /// their sum stays in a register and is written out at each of them, so that none waits for what was written before.
-  void add_forces(const Window& w, Sum* own, Sum* others) const {
+  /// their sum stays in a register and is added to what earlier rows gave to the particle at the last of them; at the others
+  /// it goes elsewhere, so that nothing branches and no pair waits for what the one before has written.
+  void add_forces(const Window& w, Sum* sums, Sum* elsewhere) const {
     using lanes::Bits8;
     using lanes::Int8;
     using lanes::Real8;
-    Int8 before = Int8{} + w.sum_of_i[0];
-    Real8 row = own[w.sum_of_i[0]];
+    const auto places = [](const Sum* first) {
+      return Bits8{} + static_cast<std::int64_t>(reinterpret_cast<std::intptr_t>(first));
+    };
+    constexpr std::int64_t size = sizeof(Sum);
+    constexpr Bits8 one_each{0, size, 2 * size, 3 * size, 4 * size, 5 * size, 6 * size, 7 * size};
+    const Bits8 first = places(sums);
+    const Bits8 else_i = places(elsewhere) + one_each;
+    const Bits8 else_j = places(elsewhere + 8) + one_each;
+    Int8 before = Int8{} - 1;
+    Real8 row{};
     for (int c = 0; c < w.count; c += 8) {
       const auto real = [&](const float* from) {
         return lanes::to_real(lanes::load<lanes::Float8>(from + c));
@@ -445,15 +447,21 @@ struct BlockContactKernel {
       lanes::transpose(i);
       lanes::transpose(j);
       const auto of_i = lanes::load<Int8>(w.sum_of_i + c);
+      const auto of_j = lanes::load<Int8>(w.sum_of_j + c);
+      const auto wide = [](const Int8& v) { return __builtin_convertvector(v, Bits8); };
+      const Bits8 at_i = wide(of_i) < no_row ? first + size * wide(of_i) : else_i;
+      const Bits8 at_j = wide(of_j) < no_row ? first + size * wide(of_j) : else_j;
       alignas(64) std::int64_t goes_on[8];  // all bits set: the same row as the pair before
-      lanes::store(__builtin_convertvector(
-                       of_i == __builtin_shufflevector(before, of_i, 7, 8, 9, 10, 11, 12, 13, 14), Bits8),
-                   goes_on);
+      alignas(64) Sum* to[8];
+      alignas(64) Sum* other[8];
+      lanes::store(wide(of_i == __builtin_shufflevector(before, of_i, 7, 8, 9, 10, 11, 12, 13, 14)), goes_on);
+      lanes::store(wide(of_i) != wide(lanes::load<Int8>(w.sum_of_i + c + 1)) ? at_i : else_i, to);
+      lanes::store(at_j, other);
       before = of_i;
       for (int k = 0; k < 8; ++k) {
         row = reinterpret_cast<Real8>(reinterpret_cast<Bits8>(row) & goes_on[k]) + i[k];
-        own[w.sum_of_i[c + k]] = row;
-        others[w.sum_of_j[c + k]] += j[k];
+        *to[k] += row;
+        *other[k] += j[k];
       }
     }
   }

@@ -48,7 +48,7 @@ struct BridgeKernel {
   }
 
   KOKKOS_INLINE_FUNCTION void add(Index p, Real inverse_mass, const Vec3& force, BlockReport& report) const {
-    out.force(p) += force;
+    out.load(p).force += force;
     if (inverse_mass == 0) report.support_impulse += in.kick * force;
     ++report.bridges;
   }

@@ -9,6 +9,7 @@
 
 #include "dem/contact_force.hpp"
 #include "dem/contact_loop.hpp"
+#include "dem/run_blocks.hpp"
 #ifndef KOKKOS_ENABLE_CUDA
 #include "dem/block_kernel.hpp"
 #endif
@@ -88,9 +89,7 @@ struct ParticleContactKernel {
       report.include({f.overlap / Kokkos::min(a.radius, b.radius), f.overlap, f.approach_speed});
     }
     if (ma.inverse_mass == 0) report.support_impulse += in.kick * sum.force;
-    out.force(p) = sum.force;
-    out.torque(p) = sum.torque;
-    out.touching_new(p) = contacts;
+    out.load(p) = {sum.force, sum.torque, static_cast<Real>(contacts), 0};
   }
 };
 
@@ -99,20 +98,15 @@ void run_contact_kernel(const ContactInput& in, const Laws& laws, const ContactR
   const Index blocks = contact_block_count(in.particles.count);
 #ifndef KOKKOS_ENABLE_CUDA
   if (in.list.half) {
-    // Dense and dilute blocks cost differently: threads take them as they come. Blocks do not share results. Of many
-    // blocks a thread takes several at once: each asks for the memory of the next.
-    const int chunk = std::clamp(blocks / (32 * Device().concurrency()), 1, 8);
-    const Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>> range(0, blocks,
-                                                                               Kokkos::ChunkSize(chunk));
     if (in.domain.repeats()) {
-      Kokkos::parallel_for("dem::contact_kernel::block_periodic", range,
-                           BlockContactKernel<Laws, false, true>{in, out, laws});
+      run_blocks("dem::contact_kernel::block_periodic", blocks, 1,
+                 BlockContactKernel<Laws, false, true>{in, out, laws});
     } else if (in.one_particle_material) {
-      Kokkos::parallel_for("dem::contact_kernel::block_one_material", range,
-                           BlockContactKernel<Laws, true, false>{in, out, laws});
+      run_blocks("dem::contact_kernel::block_one_material", blocks, 1,
+                 BlockContactKernel<Laws, true, false>{in, out, laws});
     } else {
-      Kokkos::parallel_for("dem::contact_kernel::block", range,
-                           BlockContactKernel<Laws, false, false>{in, out, laws});
+      run_blocks("dem::contact_kernel::block", blocks, 1,
+                 BlockContactKernel<Laws, false, false>{in, out, laws});
     }
     return;
   }

@@ -37,12 +37,19 @@ KOKKOS_INLINE_FUNCTION BlockReport start_report(BlockReport report) {
   return report;
 }
 
-/// Forces and torques by contact, and the reports of the blocks. All arrays are particle- or block-sized.
+/// What contacts do to a particle, in one cache line: sums go straight there.
+struct alignas(64) ContactLoad {
+  Vec3 force{};       ///< [N]
+  Vec3 torque{};      ///< [N m]
+  Real touching = 0;  ///< partners and walls touched
+  Real unused = 0;
+};
+
+/// Loads by contact, and the reports of the blocks. All arrays are particle- or block-sized.
 struct ContactResult {
-  DeviceArray<Vec3> force;             ///< [N]
-  DeviceArray<Vec3> torque;            ///< [N m]
-  DeviceArray<std::int32_t> touching;  ///< partners and walls touched, of the last substep (rolling needs it)
-  DeviceArray<std::int32_t> touching_new;
+  DeviceArray<ContactLoad> load;
+  DeviceArray<std::int32_t>
+      touching;  ///< partners and walls touched in the last substep (rolling needs it); motion sets it
   DeviceArray<BlockReport> report;
   SpringSlots springs;  ///< of laws that remember; read and written
 };
@@ -56,6 +63,7 @@ struct ContactInput {
   Index materials = 1;
   Real kick = 0;  ///< time over which these forces will act [s], for the impulses reported
   bool one_particle_material = true;  ///< all particles are of material 0: the pair table is one entry
+  bool any_fixed = true;              ///< some particle may be fixed
 };
 
 /// Particles a block, a work item of the loop. On a GPU every particle is one of its own.
@@ -63,8 +71,7 @@ inline constexpr Index contact_block = half_lists ? list_block : 1;
 
 inline Index contact_block_count(Index particles) { return (particles + contact_block - 1) / contact_block; }
 
-/// Overwrites force, torque and touching_new with the contacts between particles at this moment and carries the reports
-/// on; walls add theirs afterwards (dem/wall_contacts.hpp). Deterministic: each particle sums its row in list order,
+/// Overwrites the loads with the contacts between particles at this moment and carries the reports on; walls add theirs afterwards (dem/wall_contacts.hpp). Deterministic: each particle sums its row in list order,
 /// whoever computes it.
 void compute_contact_forces(const ContactInput& input, const ContactOptions& options,
                             const ContactResult& result);

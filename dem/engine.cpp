@@ -54,6 +54,7 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   volume_time_ = 0;
   next_id_ = 0;
   one_particle_material_ = true;
+  any_fixed_ = false;
   take_stock(seeds);
   if (largest_radius_ == 0) return;
   search_.emplace_back(setup_.domain, skin(), smallest_radius_, largest_radius_);
@@ -106,7 +107,8 @@ void Engine::begin_substep(core::Timers& timers) {
                            table_,
                            static_cast<Index>(setup_.materials.size()),
                            step_.kick,
-                           one_particle_material_};
+                           one_particle_material_,
+                           any_fixed_};
   compute_contact_forces(input, setup_.contacts, result_);
   if (setup_.contacts.cohesion) add_bridge_forces(input, *setup_.contacts.cohesion, result_);
   walls_.add_contacts(input, setup_.contacts, result_);
@@ -126,7 +128,6 @@ Real Engine::wall_time() const {
 }
 
 void Engine::end_substep() {
-  std::swap(result_.touching, result_.touching_new);
   started_ = true;
   ++substeps_;
   if (++steps_since_build_ >= Displacement::most_steps) list_valid_ = false;
@@ -190,9 +191,9 @@ std::size_t Engine::bytes() const {
   std::size_t total = bytes_of(particles_.position_radius) + bytes_of(particles_.velocity_spin) +
                       bytes_of(particles_.mass) + bytes_of(particles_.acceleration) +
                       bytes_of(particles_.angular_acceleration);
-  total += bytes_of(work_) + bytes_of(result_.touching) + bytes_of(result_.touching_new) +
-           bytes_of(result_.report);
-  total += bytes_of(list_.offset) + bytes_of(list_.partner) + bytes_of(list_.displacement);
+  total += bytes_of(work_) + bytes_of(result_.touching) + bytes_of(free_order_) + bytes_of(result_.report);
+  total +=
+      bytes_of(list_.offset) + bytes_of(list_.partner) + bytes_of(list_.owner) + bytes_of(list_.displacement);
   total += walls_.bytes();
   for (const NeighbourSearch& search : search_) total += search.bytes();
   total += history_.bytes();

@@ -203,11 +203,13 @@ class Engine {
   ContactResult result_;
   ContactHistory history_;
   // Holds force and torque; while neither is needed, what the list search or a re-sort needs.
-  DeviceArray<Real> work_;
+  DeviceArray<Real> work_;                // loads by contact; free between substeps
+  DeviceArray<std::int32_t> free_order_;  // free between uses
   MotionStep step_;
   MotionFlagsView flags_;
   bool list_valid_ = false;
   bool one_particle_material_ = true;
+  bool any_fixed_ = false;
   bool started_ = false;
   std::int64_t substeps_ = 0;
   std::int64_t walls_since_ = 0;  // substep at which walls began to move; -1: not yet

@@ -27,6 +27,7 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/moving_mass", moving_mass_);
   file.write("dem/moving_volume", moving_volume_);
   file.write("dem/one_particle_material", std::int64_t{one_particle_material_ ? 1 : 0});
+  file.write("dem/any_fixed", std::int64_t{any_fixed_ ? 1 : 0});
   file.write("dem/skin_tuner", std::span(&tuner_.state, 1));
   if (n == 0) return;
   file.write("dem/position_radius", host_copy(particles_.position_radius, n));
@@ -63,6 +64,7 @@ void Engine::load(core::CheckpointReader& file) {
   moving_mass_ = file.read_double("dem/moving_mass");
   moving_volume_ = file.read_double("dem/moving_volume");
   one_particle_material_ = file.read_int64("dem/one_particle_material") != 0;
+  any_fixed_ = file.read_int64("dem/any_fixed") != 0;
   file.read_into("dem/skin_tuner", std::span(&tuner_.state, 1));
   if (largest_radius_ > 0) {
     search_.emplace_back(setup_.domain, skin(), smallest_radius_, largest_radius_);

@@ -42,6 +42,7 @@ void Engine::put_particles(const std::vector<ParticleSeed>& seeds, Index first) 
     motion.push_back({s.velocity.x, s.velocity.y, s.velocity.z, s.spin.x, s.spin.y, s.spin.z,
                       s.fixed ? 0 : 1 / mass.back(), s.material, next_id_++});
     one_particle_material_ = one_particle_material_ && s.material == 0;
+    any_fixed_ = any_fixed_ || s.fixed;
   }
   put(particles_.position_radius, first, place);
   put(particles_.velocity_spin, first, motion);

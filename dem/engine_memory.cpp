@@ -61,13 +61,11 @@ void Engine::allocate(std::size_t n) {
   particles_.acceleration = make_array<Vec3f>("dem::engine_memory::acceleration", n);
   particles_.angular_acceleration = make_array<Vec3f>("dem::engine_memory::angular_acceleration", n);
   particles_.count = static_cast<Index>(n);
-  const std::size_t force_and_torque = 6 * n;
-  work_ = make_array<Real>("dem::engine_memory::work",
-                           std::max(force_and_torque, NeighbourSearch::scratch_size(n)));
-  result_.force = DeviceArray<Vec3>(reinterpret_cast<Vec3*>(work_.data()), n);
-  result_.torque = DeviceArray<Vec3>(reinterpret_cast<Vec3*>(work_.data()) + n, n);
+  const std::size_t loads = sizeof(ContactLoad) / sizeof(Real) * n;
+  work_ = make_array<Real>("dem::engine_memory::work", std::max(loads, NeighbourSearch::scratch_size(n)));
+  result_.load = DeviceArray<ContactLoad>(reinterpret_cast<ContactLoad*>(work_.data()), n);
   result_.touching = make_array<std::int32_t>("dem::engine_memory::touching", n);
-  result_.touching_new = make_array<std::int32_t>("dem::engine_memory::touching_new", n);
+  free_order_ = make_array<std::int32_t>("dem::engine_memory::order", n);
   result_.report = make_array<BlockReport>("dem::engine_memory::report",
                                            static_cast<std::size_t>(contact_block_count(particles_.count)));
   history_.clear();
@@ -94,9 +92,8 @@ void Engine::reorder(const DeviceArray<std::int32_t>& order, Index count) {
 void Engine::sort_memory() {
   if (search_.empty()) return;
   search_.front().find_order(particles_, setup_.time_step, list_);
-  const DeviceArray<std::int32_t>& order = result_.touching_new;  // free between substeps
-  search_.front().find_memory_order(order);
-  reorder(order, particles_.count);
+  search_.front().find_memory_order(free_order_);
+  reorder(free_order_, particles_.count);
   outer_steps_since_sort_ = 0;
 }
 

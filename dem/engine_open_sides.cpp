@@ -91,7 +91,7 @@ void sum_leaving(const Domain& domain, const Particles& particles, const DeviceA
 }  // namespace
 
 void Engine::remove_left() {
-  const DeviceArray<std::int32_t>& order = result_.touching_new;  // free between substeps
+  const DeviceArray<std::int32_t>& order = free_order_;
   const Vec3 momentum = compute_totals().momentum;
   const Index staying = rank_staying(setup_.domain, particles_, order);
   left_ += particles_.count - staying;

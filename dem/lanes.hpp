@@ -67,8 +67,24 @@ inline Real8 to_real(const Float8& v) {
 inline Real8 join(const Real4& a, const Real4& b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
+inline Float8 join(const Float4& a, const Float4& b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
 inline Float16 join(const Float8& a, const Float8& b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+inline Real8 all(Real x) { return Real8{x, x, x, x, x, x, x, x}; }
+
+/// Lanes where a <= b does not hold, so also where one of them is not a number.
+inline unsigned not_at_most(const Float16& a, const Float16& b) {
+#ifdef PELLICLE_AVX512
+  return _mm512_cmp_ps_mask(reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b), _CMP_NLE_UQ);
+#else
+  unsigned mask = 0;
+  for (int k = 0; k < 16; ++k) mask |= (a[k] <= b[k] ? 0U : 1U) << k;
+  return mask;
+#endif
 }
 
 /// Lanes where a < b.
@@ -138,16 +154,19 @@ inline Real8 keep(Mask8 mask, const Real8& v) {
 #endif
 }
 
-/// Three numbers from each of two places, side by side, and two zeros.
-inline Real8 load_threes(const Real* first, const Real* second) {
+/// Lanes of a that are in the mask, of b elsewhere.
+inline Real8 select(Mask8 mask, const Real8& a, const Real8& b) {
 #ifdef PELLICLE_AVX512
-  const auto low = reinterpret_cast<Real4>(_mm256_maskz_loadu_pd(0x07, first));
-  const auto high = reinterpret_cast<Real4>(_mm256_maskz_loadu_pd(0x07, second));
-  return __builtin_shufflevector(low, high, 0, 1, 2, 4, 5, 6, 3, 7);
+  return reinterpret_cast<Real8>(
+      _mm512_mask_mov_pd(reinterpret_cast<__m512d>(b), mask, reinterpret_cast<__m512d>(a)));
 #else
-  return Real8{first[0], first[1], first[2], second[0], second[1], second[2], 0, 0};
+  Real8 result = b;
+  for (int k = 0; k < 8; ++k) result[k] = ((mask >> k) & 1) != 0 ? a[k] : b[k];
+  return result;
 #endif
 }
+
+/// Three numbers from each of two places, side by side, and two zeros.
 inline Float8 load_threes(const float* first, const float* second) {
 #ifdef PELLICLE_AVX512
   const auto low = reinterpret_cast<Float4>(_mm_maskz_loadu_ps(0x07, first));
@@ -158,22 +177,13 @@ inline Float8 load_threes(const float* first, const float* second) {
 #endif
 }
 
-/// The reverse: writes the first six numbers to two places. One by one: a masked store of more than is written holds up
+/// The reverse: writes the first six numbers to two places. Not with masked stores: one of more than is written holds up
 /// the next load from there.
 inline void store_threes(const Float8& v, float* first, float* second) {
-  for (int k = 0; k < 3; ++k) {
-    first[k] = v[k];
-    second[k] = v[k + 3];
-  }
-}
-
-/// Writes the first six numbers.
-inline void store_six(const Real8& v, Real* to) {
-#ifdef PELLICLE_AVX512
-  _mm512_mask_storeu_pd(to, 0x3f, reinterpret_cast<__m512d>(v));
-#else
-  for (int k = 0; k < 6; ++k) to[k] = v[k];
-#endif
+  store(__builtin_shufflevector(v, v, 0, 1), first);
+  store(__builtin_shufflevector(v, v, 3, 4), second);
+  first[2] = v[2];
+  second[2] = v[5];
 }
 
 /// Which of eight flags are set.

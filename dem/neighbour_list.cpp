@@ -90,6 +90,10 @@ void place_rows(const NeighbourList& list, Index first_block, Index blocks, std:
         for (Index p = begin; p < end; ++p) {
           const std::int32_t length = list.offset(p);
           list.offset(p) = start + n;
+          if (list.half) {
+            const auto own = static_cast<std::uint16_t>(p % list_block);
+            for (std::int32_t e = 0; e < length; ++e) list.owner(start + n + e) = own;
+          }
           n += length;
         }
         if (end == list.count) list.offset(end) = start + n;
@@ -101,15 +105,16 @@ void place_rows(const NeighbourList& list, Index first_block, Index blocks, std:
 }
 
 /// Room for `size` entries, of which `used` are kept.
-void grow_list(DeviceArray<std::int32_t>& partner, std::size_t used, std::size_t size) {
-  if (partner.extent(0) >= size) return;
-  DeviceArray<std::int32_t> grown(
-      Kokkos::view_alloc(Kokkos::WithoutInitializing, "dem::neighbour_list::partner"), size + size / 16 + 64);
+template <class T>
+void grow_list(DeviceArray<T>& list, const char* label, std::size_t used, std::size_t size) {
+  if (list.extent(0) >= size) return;
+  DeviceArray<T> grown(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
+                       size + size / 16 + 64);
   if (used > 0) {
     const std::pair<std::size_t, std::size_t> kept(0, used);
-    Kokkos::deep_copy(Kokkos::subview(grown, kept), Kokkos::subview(partner, kept));
+    Kokkos::deep_copy(Kokkos::subview(grown, kept), Kokkos::subview(list, kept));
   }
-  partner = grown;
+  list = grown;
 }
 
 }  // namespace
@@ -196,7 +201,10 @@ void NeighbourSearch::find_rows(const Particles& particles, NeighbourList& list,
     const Real share = static_cast<Real>(first + present) / blocks;
     const auto expected = static_cast<std::size_t>(static_cast<Real>(total) / share);
     if (list.partner.extent(0) < static_cast<std::size_t>(total)) {
-      grow_list(list.partner, static_cast<std::size_t>(before), expected);
+      grow_list(list.partner, "dem::neighbour_list::partner", static_cast<std::size_t>(before), expected);
+    }
+    if (list.half && list.owner.extent(0) < static_cast<std::size_t>(total)) {
+      grow_list(list.owner, "dem::neighbour_list::owner", static_cast<std::size_t>(before), expected);
     }
     place_rows(list, first, present, static_cast<std::int32_t>(before), staging_, block_start_,
                block_capacity_);

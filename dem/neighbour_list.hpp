@@ -13,7 +13,7 @@ namespace pellicle::dem {
 /// How far each particle may move before the lists must be rebuilt, in terms of what it is doing: a slow particle in
 /// the annulus gets little, a fast one in the spout more, so that one fast particle does not fatten every list.
 struct SkinOptions {
-  Real steps = 26;                ///< steps that a particle's own speed should last
+  Real steps = 44;                ///< steps that a particle's own speed should last
   Real smallest_fraction = 0.07;  ///< of the smallest radius, at the start if it is tuned
   Real largest_fraction = 0.40;   ///< of the largest radius
   Real reach = 0;                 ///< share of a particle in the gap at which two still feel each other [m]
@@ -32,11 +32,13 @@ inline constexpr Index list_block = 1024;
 /// at the first of the two, those of particles of two blocks twice, and none of two fixed particles.
 /// A slot keeps its meaning until the next build, so laws with history can keep an array per slot.
 struct NeighbourList {
-  Index count = 0;                         ///< particles
-  std::int64_t entries = 0;                ///< of all rows
-  bool half = half_lists;                  ///< to be set before a build
-  DeviceArray<std::int32_t> offset;        ///< count + 1
-  DeviceArray<std::int32_t> partner;       ///< particle index, row by row, ordered by cell, then by id
+  Index count = 0;                    ///< particles
+  std::int64_t entries = 0;           ///< of all rows
+  bool half = half_lists;             ///< to be set before a build
+  DeviceArray<std::int32_t> offset;   ///< count + 1
+  DeviceArray<std::int32_t> partner;  ///< particle index, row by row, ordered by cell, then by id
+  DeviceArray<std::uint16_t>
+      owner;  ///< of half lists: whose row an entry is in, counted from its block's first
   DeviceArray<Displacement> displacement;  ///< of every particle since the build
 };
 

@@ -46,7 +46,7 @@ struct WallBridgeKernel {
     if (before.count == 0 && !touches) return;
     if (candidates.crowded()) ++report[candidates[0].wall].crowded;
     candidates.select(walls, self.radius);
-    Vec3 force = out.force(p);
+    Vec3 force = out.load(p).force;
     unsigned taken = 0;
     for (int i = 0; i < candidates.count(); ++i) {
       const WallCandidate& candidate = candidates[i];
@@ -65,7 +65,7 @@ struct WallBridgeKernel {
       r.angular_impulse -= in.kick * cross(arm, pull);
       ++r.bridges;
     }
-    out.force(p) = force;
+    out.load(p).force = force;
   }
 };
 

@@ -6,6 +6,7 @@
 
 #include "dem/contact_force.hpp"
 #include "dem/prefetch.hpp"
+#include "dem/run_blocks.hpp"
 #include "dem/wall_candidates.hpp"
 #include "dem/wall_contacts.hpp"
 
@@ -56,20 +57,18 @@ struct WallContactKernel {
     candidates.select(walls, self.radius);
     const VelocitySpin motion = in.particles.velocity_spin(p);
     const Real compliance = spin_compliance_of(out.touching(p), motion.inverse_mass, self.radius);
-    Vec3 force = out.force(p);
-    Vec3 torque = out.torque(p);
+    ContactLoad load = out.load(p);
     std::conditional_t<(springs > 0), SpringRow, NoSpringRow> row;
     row.take(*this, k, candidates);
     for (int i = 0; i < candidates.count(); ++i) {
       const ContactForce f =
           contact(candidates[i], self, motion, compliance, row[i], report[candidates[i].wall]);
-      force += f.force;
-      torque += f.torque + f.rolling_torque;
+      load.force += f.force;
+      load.torque += f.torque + f.rolling_torque;
     }
     row.put_back(*this, k, candidates);
-    out.force(p) = force;
-    out.torque(p) = torque;
-    out.touching_new(p) += candidates.count();
+    load.touching += candidates.count();
+    out.load(p) = load;
   }
 
   /// Particles near walls are far apart in memory.
@@ -79,8 +78,7 @@ struct WallContactKernel {
     const Index p = list.particle(ahead);
     prefetch(&in.particles.position_radius(p));
     prefetch(&in.particles.velocity_spin(p));
-    prefetch_to_write(&out.force(p));
-    prefetch_to_write(&out.torque(p));
+    prefetch_to_write(&out.load(p));
     if constexpr (springs > 0) {
       const WallMemory& memory = history.memory(ahead);
       prefetch_to_write(&memory.count);
@@ -178,10 +176,9 @@ void run_wall_contacts(const WallInput& walls, const ContactInput& input, const 
   std::visit(
       [&](const auto& normal, const auto& rolling) {
         using Laws = ContactLaws<std::decay_t<decltype(normal)>, Tangential, std::decay_t<decltype(rolling)>>;
-        Kokkos::parallel_for("dem::wall_contact_kernel::block",
-                             Kokkos::RangePolicy<Device, Kokkos::Schedule<Kokkos::Dynamic>>(0, wall_blocks),
-                             WallContactKernel<Laws>{input, walls.list, walls.geometry, result, walls.springs,
-                                                     walls.report, Laws{normal, tangential, rolling}});
+        run_blocks("dem::wall_contact_kernel::block", wall_blocks, 8,
+                   WallContactKernel<Laws>{input, walls.list, walls.geometry, result, walls.springs,
+                                           walls.report, Laws{normal, tangential, rolling}});
       },
       options.normal, options.rolling);
 }

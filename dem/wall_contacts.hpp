@@ -34,7 +34,7 @@ struct WallInput {
   DeviceArray<WallReport> report;
 };
 
-/// Adds the contacts with walls at this moment to force, torque and touching_new and carries springs and reports on.
+/// Adds the contacts with walls at this moment to the loads and carries springs and reports on.
 void add_wall_contacts(const WallInput& walls, const ContactInput& input, const ContactOptions& options,
                        const ContactResult& result);
 

@@ -64,6 +64,11 @@ void WallHistory::unpack(const WallList& list) {
   place_ = Place::rows;
 }
 
+std::size_t WallHistory::bytes() const {
+  return bytes_of(rows_.memory) + bytes_of(rows_.spring) + bytes_of(packed_.memory) +
+         bytes_of(packed_.spring) + bytes_of(row_) + bytes_of(row_next_);
+}
+
 void WallHistory::save(core::CheckpointWriter& file) const {
   if (!remembers_) return;
   if (place_ == Place::rows) throw std::logic_error("contacts with walls are saved before they are packed");

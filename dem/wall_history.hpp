@@ -63,6 +63,9 @@ class WallHistory {
 
   const WallSprings& rows() const { return rows_; }
 
+  /// Device memory held [bytes].
+  std::size_t bytes() const;
+
   /// Writes or reads what was put aside. It must have been.
   void save(core::CheckpointWriter& file) const;
   void load(const core::CheckpointReader& file);

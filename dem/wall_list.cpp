@@ -56,14 +56,22 @@ struct Store {
   }
 };
 
+/// Apart from the scan, which on several threads looks at everything twice.
+void find_near(const NearWalls& walls, const DeviceArray<std::uint8_t>& near) {
+  Kokkos::parallel_for(
+      "dem::wall_list::find_near", DeviceRange(0, walls.particles.count),
+      KOKKOS_LAMBDA(const Index p) { near(p) = walls.visit(p, StopAtFirst{}) ? 1 : 0; });
+}
+
 /// Writes the particles near a wall in ascending order, as many as there is room for; returns how many there are.
-std::int32_t collect_near(const NearWalls& near, const DeviceArray<std::int32_t>& particle) {
+std::int32_t collect_near(const DeviceArray<std::uint8_t>& near, Index count,
+                          const DeviceArray<std::int32_t>& particle) {
   const auto room = static_cast<std::int32_t>(particle.extent(0));
   std::int32_t found = 0;
   Kokkos::parallel_scan(
-      "dem::wall_list::collect_near", DeviceRange(0, near.particles.count),
+      "dem::wall_list::collect_near", DeviceRange(0, count),
       KOKKOS_LAMBDA(const Index p, std::int32_t& rank, const bool final) {
-        if (!near.visit(p, StopAtFirst{})) return;
+        if (near(p) == 0) return;
         if (final && rank < room) particle(rank) = p;
         ++rank;
       },
@@ -99,10 +107,12 @@ void build_wall_list(const Particles& particles, const NeighbourList& neighbours
   list.count = 0;
   if (walls.body.extent(0) == 0) return;
   const NearWalls near{particles, neighbours, allowances, walls, cohesion};
-  std::int32_t found = collect_near(near, list.particle);
+  ensure_size(list.near, static_cast<std::size_t>(particles.count), "dem::wall_list::near");
+  find_near(near, list.near);
+  std::int32_t found = collect_near(list.near, particles.count, list.particle);
   if (found > static_cast<std::int32_t>(list.particle.extent(0))) {
     ensure_size(list.particle, static_cast<std::size_t>(found), "dem::wall_list::particle");
-    found = collect_near(near, list.particle);
+    found = collect_near(list.near, particles.count, list.particle);
   }
   list.count = found;
   ensure_size(list.offset, static_cast<std::size_t>(found) + 1, "dem::wall_list::offset");

@@ -14,6 +14,7 @@ struct WallList {
   DeviceArray<std::int32_t> particle;  ///< their indices, ascending
   DeviceArray<std::int32_t> offset;    ///< count + 1: row k is entries offset(k) … offset(k + 1)
   DeviceArray<std::int32_t> surface;   ///< numbers of surfaces, row by row
+  DeviceArray<std::uint8_t> near;      ///< of every particle: whether it is in the list
 };
 
 /// Finds the surfaces within reach of each moving particle: its radius, `allowances` times its allowance of the neighbour

@@ -98,8 +98,8 @@ void WallSystem::add_contacts(const ContactInput& input, const ContactOptions& o
 }
 
 std::size_t WallSystem::bytes() const {
-  return bytes_of(list_.particle) + bytes_of(list_.offset) + bytes_of(list_.surface) + bytes_of(report_) +
-         bytes_of(report_scratch_);
+  return bytes_of(list_.particle) + bytes_of(list_.offset) + bytes_of(list_.surface) + bytes_of(list_.near) +
+         bytes_of(report_) + bytes_of(report_scratch_) + history_.bytes() + bridges_.bytes();
 }
 
 std::vector<WallReport> WallSystem::collect_reports() {

@@ -127,10 +127,8 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   options.tangential = ViscousCoulomb{setup.time_step};
   options.rolling = ConstantTorque{setup.time_step};
   ContactResult out;
-  out.force = DeviceArray<Vec3>("test::contact_laws::force", n);
-  out.torque = DeviceArray<Vec3>("test::contact_laws::torque", n);
+  out.load = DeviceArray<ContactLoad>("test::contact_laws::load", n);
   out.touching = DeviceArray<std::int32_t>("test::contact_laws::touching", n);
-  out.touching_new = DeviceArray<std::int32_t>("test::contact_laws::touching_new", n);
   out.report = DeviceArray<BlockReport>("test::contact_laws::report",
                                         static_cast<std::size_t>(contact_block_count(in.particles.count)));
   Kokkos::deep_copy(out.touching, touching);
@@ -138,13 +136,13 @@ LoopResult run_loop(const EngineSetup& setup, const std::vector<ParticleSeed>& s
   walls.add_contacts(in, options, out);
   Kokkos::fence();
   LoopResult result;
-  const auto force = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, out.force);
-  const auto torque = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, out.torque);
-  const auto count = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, out.touching_new);
+  const auto load = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, out.load);
   const auto report = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, out.report);
-  result.force.assign(force.data(), force.data() + n);
-  result.torque.assign(torque.data(), torque.data() + n);
-  result.touching.assign(count.data(), count.data() + n);
+  for (std::size_t p = 0; p < n; ++p) {
+    result.force.push_back(load(p).force);
+    result.torque.push_back(load(p).torque);
+    result.touching.push_back(static_cast<std::int32_t>(load(p).touching));
+  }
   result.report = report(0);
   if (walls.count() > 0) result.wall_report = walls.collect_reports().at(0);
   return result;
