@@ -195,6 +195,22 @@ gas:
     - {name: top, on: top, outlet: {}}
 )";
 
+/// A block that blows, and a vent by mass.
+inline constexpr const char* blower_case =
+    R"(domain: {min: ["-60 mm", "-60 mm", 0], max: ["60 mm", "60 mm", "150 mm"]}
+time: {end: 0.01, gas_step: 0.001}
+walls:
+  - {name: plug, block: {min: ["-22 mm", "-18 mm", "31 mm"], max: ["17 mm", "13 mm", "58 mm"]}, material: steel}
+gas:
+  density: 1.2
+  viscosity: 1.8e-5
+  inside: [0, 0, "100 mm"]
+  grid: {cells: [12, 12, 15]}
+  boundaries:
+    - {name: blow, on_wall: plug, inlet: {mass_flow: "1 g/s", share: 0.5}}
+    - {name: top, on: top, outlet: {}}
+)";
+
 /// Particles of every way to be spread in size.
 inline constexpr const char* powders_case = R"(domain: {min: [0, 0, 0], max: ["40 mm", "40 mm", "100 mm"]}
 time: {end: 0.1, particle_step: 1e-6, settle: {until: quiet, at_most: "0.5 s", speed: "2 mm/s"}}

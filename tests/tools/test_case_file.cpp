@@ -130,7 +130,7 @@ TEST(CaseFile, DefaultsFollowFromOtherKeys) {
 TEST(CaseFile, ResolvedFileGivesTheSameCase) {
   for (const char* text :
        {spouted_bed_case, channel_case, humid_case, rising_case, drying_case, refined_case, chamber_case,
-        powders_case, vessel_case, sprayed_case, turbulent_case, two_particles_case}) {
+        powders_case, vessel_case, sprayed_case, turbulent_case, blower_case, two_particles_case}) {
     const CaseSpec spec = parse_case(text, "some_case.yaml");
     const std::string resolved = resolved_yaml(spec);
     const CaseSpec again = parse_case(resolved, "another_name.yaml");
@@ -181,6 +181,7 @@ TEST(CaseFile, TheTestsCoverEveryKey) {
   given.merge(std::map(parse_case(drying_case, "c.yaml").lines));
   given.merge(std::map(parse_case(refined_case, "c.yaml").lines));
   given.merge(std::map(parse_case(turbulent_case, "c.yaml").lines));
+  given.merge(std::map(parse_case(blower_case, "c.yaml").lines));
   given.merge(std::map(parse_case(chamber_case, "c.yaml").lines));
   given.merge(std::map(parse_case(powders_case, "c.yaml").lines));
   given.merge(std::map(parse_case(vessel_case, "c.yaml").lines));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <stdexcept>
@@ -61,7 +62,7 @@ Vec3 find_inside(const CaseSpec& spec, const std::string& a_wall) {
   if (spec.gas->inside) return *spec.gas->inside;
   const cfd::BoundaryPatch* inlet = nullptr;
   for (const cfd::BoundaryPatch& patch : spec.gas->boundaries) {
-    if (!std::holds_alternative<cfd::Inlet>(patch.kind)) continue;
+    if (!std::holds_alternative<cfd::Inlet>(patch.kind) || patch.wall) continue;
     const bool bounded = patch.region || patch.disc;
     if (!inlet || (bounded && !inlet->region && !inlet->disc)) inlet = &patch;
   }
@@ -72,7 +73,84 @@ Vec3 find_inside(const CaseSpec& spec, const std::string& a_wall) {
       spec.where("gas"), a_wall));
 }
 
+// Walls between the inlets: which one lies apart from the others, if the inlets alone say where the gas is.
+std::string describe_parted_inlets(const CaseSpec& spec, const cfd::ImmersedGeometry& immersed) {
+  if (spec.gas->inside || immersed.surfaces.empty()) return {};
+  std::vector<const cfd::BoundaryPatch*> inlets;
+  std::vector<Vec3> points;
+  for (const cfd::BoundaryPatch& patch : spec.gas->boundaries) {
+    if (!std::holds_alternative<cfd::Inlet>(patch.kind) || patch.wall) continue;
+    inlets.push_back(&patch);
+    points.push_back(point_within(spec, patch));
+  }
+  const std::vector<int> groups =
+      cfd::group_points(make_grid(spec.gas->grid, spec.domain), immersed.surfaces, points);
+  const auto joined = [&](std::size_t i) { return std::count(groups.begin(), groups.end(), groups[i]); };
+  std::size_t most = 0, least = 0;
+  for (std::size_t i = 1; i < groups.size(); ++i) {
+    if (joined(i) > joined(most)) most = i;
+    if (joined(i) < joined(least)) least = i;
+  }
+  if (inlets.size() < 2 || groups[most] == groups[least]) {
+    for (std::size_t i = 1; i < groups.size(); ++i) {
+      if (groups[i] != groups[0]) least = i, most = 0;
+    }
+    if (inlets.size() < 2 || groups[most] == groups[least]) return {};
+    return fmt::format(
+        "{}: walls part inlet '{}' from inlet '{}', and nothing says on which side the gas is; allowed: a "
+        "point "
+        "in the gas as gas.inside, or inlets within one vessel",
+        inlets[least]->where, inlets[least]->name, inlets[most]->name);
+  }
+  std::string others;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i] == groups[most])
+      others += fmt::format("{}'{}'", others.empty() ? "" : ", ", inlets[i]->name);
+  }
+  return fmt::format(
+      "{}: inlet '{}' lies apart from {}: walls are between them; allowed: inlets within one vessel, or a "
+      "point in "
+      "the gas as gas.inside",
+      inlets[least]->where, inlets[least]->name, others);
+}
+
 }  // namespace
+
+// Sides where the gas stops though neither a boundary nor a wall of the case says so: where a vessel leaks.
+std::string describe_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geometry) {
+  if (!geometry.is_cut) return {};
+  std::string sides;
+  for (std::size_t s = 0; s < 6; ++s) {
+    const auto side = static_cast<cfd::Side>(s);
+    const int axis = cfd::axis_of(side);
+    if (spec.domain.periodic[static_cast<std::size_t>(axis)]) continue;
+    const bool named =
+        std::any_of(spec.gas->boundaries.begin(), spec.gas->boundaries.end(),
+                    [&](const auto& patch) { return !patch.wall && patch.on == side; }) ||
+        std::any_of(spec.walls.begin(), spec.walls.end(), [](const WallSpec& wall) { return wall.box; });
+    if (named) continue;
+    Real open = 0;
+    const cfd::Stencil& stencil = geometry.stencil;
+    for (Index c = 0; c < stencil.cells(); ++c) {
+      const Index3 at = geometry.grid.coordinates(c);
+      if (at[axis] != (cfd::is_max(side) ? stencil.n[axis] - 1 : 0)) continue;
+      const Index face =
+          stencil.face(axis, at.x, at.y, at.z) + (cfd::is_max(side) ? stencil.face_step(axis) : 0);
+      open += geometry.area[static_cast<std::size_t>(axis)](face);
+    }
+    if (open > 0) sides += fmt::format("{}{}", sides.empty() ? "" : ", ", name_of(side));
+  }
+  if (sides.empty()) return {};
+  std::string walls;
+  for (const cfd::ImmersedSurface& surface : geometry.surfaces) {
+    walls += fmt::format("{}'{}'", walls.empty() ? "" : ", ", surface.name);
+  }
+  return fmt::format(
+      "{}: the gas reaches the sides {} of the domain, which no boundary and no wall names: it stops there "
+      "as at a "
+      "wall. If {} should keep it in, there is a gap between them, or gas.inside lies outside",
+      spec.where("gas"), sides, walls);
+}
 
 std::vector<dem::Wall> make_walls(const CaseSpec& spec) {
   std::vector<dem::Wall> walls;
@@ -99,7 +177,13 @@ cfd::GasSolver make_gas_solver(const CaseSpec& spec, const std::vector<dem::Wall
                        immersed);
     const std::string cut = describe_cut(gas.geometry());
     if (!cut.empty()) core::log().info("gas: {}", cut);
+    const std::string leaks = describe_leaks(spec, gas.geometry());
+    if (!leaks.empty()) core::log().warn("{}", leaks);
     return gas;
+  } catch (const InputError&) {
+    const std::string parted = describe_parted_inlets(spec, immersed);
+    if (parted.empty()) throw;
+    throw InputError(parted);
   } catch (const std::invalid_argument& error) {
     const Vec3& p = immersed.inside;
     throw InputError(fmt::format("{}: {}: [{:g}, {:g}, {:g}] m; allowed: a point in the gas as gas.inside",

@@ -24,4 +24,8 @@ std::vector<dem::Wall> make_walls(const CaseSpec& spec);
 /// What the walls left of the grid, one line; empty if nothing cuts it.
 std::string describe_cut(const cfd::FlowGeometry& geometry);
 
+/// A warning of sides that the gas reaches though no boundary and no wall of the case names them, as where a vessel leaks;
+/// empty if there are none.
+std::string describe_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geometry);
+
 }  // namespace pellicle::tools

@@ -337,6 +337,10 @@ class Checker {
     }
     if (!spec_.gas) return;
     for (const auto& patch : spec_.gas->boundaries) {
+      if (patch.wall) {
+        check_boundary_wall(patch);
+        continue;
+      }
       if (periodic(patch.on)) {
         wrong(patch.where, "on",
               fmt::format("{} is a periodic side; sides that are not periodic", side_name(patch.on)));
@@ -346,6 +350,37 @@ class Checker {
       }
     }
   }
+  /// A wall that is a boundary is one that the gas sees, and no other boundary.
+  void check_boundary_wall(const cfd::BoundaryPatch& patch) {
+    const auto wall = std::find_if(spec_.walls.begin(), spec_.walls.end(),
+                                   [&](const WallSpec& w) { return w.name == *patch.wall; });
+    std::string names;
+    for (const auto& w : spec_.walls) {
+      if (!w.box && w.gas != GasWall::open) names += (names.empty() ? "" : ", ") + w.name;
+    }
+    const std::string allowed = names.empty() ? "the case has none that fits" : names;
+    if (wall == spec_.walls.end()) {
+      wrong(patch.where, "on_wall", fmt::format("no wall \"{}\"; {}", *patch.wall, allowed));
+      return;
+    }
+    if (wall->box) {
+      wrong(patch.where, "on_wall",
+            fmt::format("\"{}\" is the sides of the domain; on: SIDE, or {}", *patch.wall, allowed));
+    } else if (wall->gas == GasWall::open) {
+      wrong(patch.where, "on_wall",
+            fmt::format("the gas passes \"{}\" (gas: open), it does not see it; {}", *patch.wall, allowed));
+    } else if (!std::holds_alternative<cfd::NoSlip>(patch.kind) && wall->gas == GasWall::free_slip) {
+      wrong(
+          patch.where, "on_wall",
+          fmt::format("\"{}\" says with gas: free_slip what it is to the gas; one of the two", *patch.wall));
+    }
+    const bool twice =
+        std::any_of(spec_.gas->boundaries.begin(), spec_.gas->boundaries.end(),
+                    [&](const auto& other) { return &other < &patch && other.wall == patch.wall; });
+    if (twice)
+      wrong(patch.where, "on_wall", fmt::format("\"{}\" is a boundary already; another wall", *patch.wall));
+  }
+
   static std::string_view side_name(cfd::Side side) {
     return domain_sides[static_cast<std::size_t>(side)].name;
   }
@@ -493,7 +528,7 @@ class Checker {
       for (const auto& name : probe.quantities) {
         if (spec_.gas) check_carried(probe.where, "quantities", name);
       }
-    } else if (spec_.particles.empty()) {
+    } else if (spec_.particles.empty() && !(probe.wall && spec_.gas)) {
       wrong(probe.where,
             probe.bed       ? "bed"
             : probe.coating ? "coating"
@@ -509,10 +544,32 @@ class Checker {
       for (const auto& wall : spec_.walls) names += (names.empty() ? "" : ", ") + wall.name;
       wrong(probe.where, "wall",
             fmt::format("no wall \"{}\"; {}", *probe.wall, names.empty() ? "the case has none" : names));
+    } else if (probe.wall) {
+      check_wall_quantities(probe);
     } else if (probe.particle && *probe.particle >= particle_count(spec_) + fed_count(spec_)) {
       wrong(probe.where, "particle",
             fmt::format("there is no particle {}; 0 to {}", *probe.particle,
                         particle_count(spec_) + fed_count(spec_) - 1));
+    }
+  }
+
+  /// Forces of particles need particles, those of the gas a wall that it sees.
+  void check_wall_quantities(const ProbeSpec& probe) {
+    const auto wall = std::find_if(spec_.walls.begin(), spec_.walls.end(),
+                                   [&](const WallSpec& w) { return w.name == *probe.wall; });
+    const bool is_seen = spec_.gas && !wall->box && wall->gas != GasWall::open;
+    for (const auto& name : probe.quantities) {
+      const bool of_gas = name.starts_with("gas_force");
+      if (of_gas && !is_seen) {
+        wrong(probe.where, "quantities",
+              fmt::format("{} needs a wall within the domain that the gas sees; another wall or quantity",
+                          name));
+      }
+      if (!of_gas && spec_.particles.empty()) {
+        wrong(probe.where, "quantities",
+              fmt::format("{} needs particles, which the case has not; gas_force_x, gas_force_y, gas_force_z",
+                          name));
+      }
     }
   }
 

@@ -99,13 +99,19 @@ void fill_in_heat(CaseSpec& spec) {
 /// All that a probe can show, without what the gas does not carry.
 std::vector<std::string> all_quantities(const CaseSpec& spec, const ProbeSpec& probe) {
   std::vector<std::string> names;
+  const bool is_seen =
+      spec.gas && probe.wall && std::any_of(spec.walls.begin(), spec.walls.end(), [&](const WallSpec& wall) {
+        return wall.name == *probe.wall && !wall.box && wall.gas != GasWall::open;
+      });
   for (const auto& quantity : quantities_of(probe)) {
     const bool warm = quantity.name == "gas_temperature" || quantity.name == "relative_humidity";
     const bool moist = quantity.name == "vapour_mass_fraction" || quantity.name == "relative_humidity";
     const bool there = (!warm || (spec.gas && spec.gas->heat)) &&
                        (!moist || (spec.gas && spec.gas->moisture)) && spec.follows(quantity.name);
     const bool eddies = !is_turbulent_quantity(quantity.name) || (spec.gas && spec.gas->options.turbulence);
-    if (there && eddies) names.emplace_back(quantity.name);
+    const bool needs_gas = quantity.name.starts_with("gas_force");
+    const bool acts = !probe.wall || (needs_gas ? is_seen : !spec.particles.empty());
+    if (there && eddies && acts) names.emplace_back(quantity.name);
   }
   return names;
 }

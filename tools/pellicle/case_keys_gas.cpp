@@ -92,7 +92,13 @@ void describe_boundary(Keys& keys, const GasSpec& gas, cfd::BoundaryPatch& patch
   keys.text({"name", "of the boundary", Need::required}, TextRule::name, patch.name);
   std::optional<int> on;
   if (!patch.name.empty()) on = static_cast<int>(patch.on);
-  keys.choice({"on", "side of the domain", Need::required}, domain_sides, on);
+  if (patch.wall) on.reset();
+  keys.choice({"on", "side of the domain"}, domain_sides, on);
+  keys.text(
+      {"on_wall",
+       "name of the wall that is an inlet, an outlet or of a temperature as a whole, in place of a side"},
+      TextRule::name, patch.wall);
+  keys.exactly_one({"on", "on_wall"});
   if (on) patch.on = static_cast<cfd::Side>(*on);
 
   std::optional<cfd::BoundaryPatch> region;
@@ -111,22 +117,25 @@ void describe_boundary(Keys& keys, const GasSpec& gas, cfd::BoundaryPatch& patch
   }
 
   BoundaryKinds kinds = keys.reading() ? BoundaryKinds{} : take_apart(patch);
-  keys.section<cfd::Inlet>({"inlet", "gas comes in at right angles to the side"}, kinds.inlet,
-                           [&](Keys& inner, cfd::Inlet& inlet) {
-                             inner.real({"velocity", "superficial, inward, over the open area"},
-                                        {dimension::velocity, range::non_negative}, inlet.velocity);
-                             inner.real({"flow_rate", "at the inlet's own temperature and pressure"},
-                                        {dimension::flow_rate, range::non_negative}, inlet.flow_rate);
-                             inner.real({"share", "of the flow rate that comes through this inlet"},
-                                        {dimension::pure_number, {.min = 0, .max = 1}}, inlet.share);
-                             inner.exactly_one({"velocity", "flow_rate"});
-                             if (inner.reading() && inlet.velocity && inlet.share != 1) {
-                               inner.problem("share", "there is no flow rate to share; only with flow_rate");
-                             }
-                             describe_incoming_gas(inner, gas, true, kinds.carried);
-                             if (!inner.reading() && !gas.options.turbulence) kinds.turbulence.reset();
-                             describe_inlet_turbulence(inner, gas, kinds.turbulence);
-                           });
+  keys.section<cfd::Inlet>(
+      {"inlet", "gas comes in at right angles to the side"}, kinds.inlet,
+      [&](Keys& inner, cfd::Inlet& inlet) {
+        inner.real({"velocity", "superficial, inward, over the open area"},
+                   {dimension::velocity, range::non_negative}, inlet.velocity);
+        inner.real({"flow_rate", "at the inlet's own temperature and pressure"},
+                   {dimension::flow_rate, range::non_negative}, inlet.flow_rate);
+        inner.real({"share", "of the flow that comes through this inlet"},
+                   {dimension::pure_number, {.min = 0, .max = 1}}, inlet.share);
+        inner.real({"mass_flow", "at the density of the gas that comes in"},
+                   {dimension::mass_flow_rate, range::non_negative}, inlet.mass_flow);
+        inner.exactly_one({"velocity", "flow_rate", "mass_flow"});
+        if (inner.reading() && inlet.velocity && inlet.share != 1) {
+          inner.problem("share", "there is no flow rate to share; only with flow_rate or mass_flow");
+        }
+        describe_incoming_gas(inner, gas, true, kinds.carried);
+        if (!inner.reading() && !gas.options.turbulence) kinds.turbulence.reset();
+        describe_inlet_turbulence(inner, gas, kinds.turbulence);
+      });
   keys.section<cfd::Outlet>({"outlet", "gas leaves"}, kinds.outlet, [&](Keys& inner, cfd::Outlet& outlet) {
     inner.real({"pressure", "at the outlet, without its hydrostatic part"}, {dimension::pressure},
                outlet.pressure);
@@ -141,7 +150,13 @@ void describe_boundary(Keys& keys, const GasSpec& gas, cfd::BoundaryPatch& patch
   keys.mark({"symmetry", "a plane of symmetry"}, kinds.symmetry);
   keys.exactly_one({"inlet", "outlet", "wall", "free_slip", "symmetry"});
   if (keys.reading()) put_together(kinds, patch);
-  if (keys.reading() && kinds.wall && kinds.wall->velocity[cfd::axis_of(patch.on)] != 0) {
+  if (keys.reading() && patch.wall && (region || kinds.free_slip || kinds.symmetry)) {
+    keys.problem("on_wall", "a wall is a boundary as a whole; inlet, outlet or wall, without region");
+  }
+  if (keys.reading() && patch.wall && kinds.wall && norm(kinds.wall->velocity) != 0) {
+    keys.problem("wall", "the wall itself says how it moves; a temperature or heat_transfer alone");
+  }
+  if (keys.reading() && !patch.wall && kinds.wall && kinds.wall->velocity[cfd::axis_of(patch.on)] != 0) {
     keys.problem("wall", "its velocity leads through the side; a velocity along the side");
   }
 }

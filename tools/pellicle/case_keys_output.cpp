@@ -87,8 +87,7 @@ void describe_probe(Keys& keys, ProbeSpec& probe) {
   keys.section<PlaneProbeSpec>({"plane", "gas over a plane across an axis, or a part of it"}, probe.plane,
                                describe_plane_probe);
   keys.whole({"particle", "one particle by its id"}, {0}, probe.particle);
-  keys.text({"wall", "forces and torques of the particles on the wall of this name"}, TextRule::name,
-            probe.wall);
+  keys.text({"wall", "forces of particles and gas on the wall of this name"}, TextRule::name, probe.wall);
   keys.choice({"side", "particles that leave through this open side"}, domain_sides, probe.side);
   keys.mark({"bed", "all particles together"}, probe.bed);
   keys.mark({"coating", "film and coating of all particles together"}, probe.coating);

@@ -85,7 +85,7 @@ void add_particles(Facts& facts, const CaseSpec& spec) {
 void add_inlets(Facts& facts, const CaseSpec& spec, const CartesianGrid& grid) {
   for (const auto& patch : spec.gas->boundaries) {
     const auto* inlet = std::get_if<cfd::Inlet>(&patch.kind);
-    if (inlet == nullptr) continue;
+    if (inlet == nullptr || patch.wall) continue;
     const int axis = cfd::axis_of(patch.on);
     const Box& box = spec.domain.box;
     Real area = 1;
@@ -96,8 +96,8 @@ void add_inlets(Facts& facts, const CaseSpec& spec, const CartesianGrid& grid) {
       area *= high - low;
     }
     // Without region other boundaries of the side take a part: then only a velocity says how fast the gas is.
-    if (!inlet->velocity && !patch.region) continue;
-    const Real velocity = inlet->velocity ? *inlet->velocity : *inlet->flow_rate / area;
+    if (!inlet->velocity && (!patch.region || !inlet->flow_rate)) continue;
+    const Real velocity = inlet->velocity ? *inlet->velocity : inlet->share * *inlet->flow_rate / area;
     const Real width = grid.width(axis, cfd::is_max(patch.on) ? grid.cells()[axis] - 1 : 0);
     facts.add("inlet " + patch.name, "{:.4g} m/s, Courant number {:.3g} at the inlet", velocity,
               velocity * spec.time.gas_step / width);

@@ -119,8 +119,8 @@ inline constexpr std::array<core::ModelInfo, 9> coating_quantities{{
     {"particle_temperature_mean", "mean temperature of the particles; 0 without heat [K]"},
 }};
 
-/// Columns of a wall probe: what particles do to the wall, averaged since the row before.
-inline constexpr std::array<core::ModelInfo, 7> wall_quantities{{
+/// Columns of a wall probe: what particles and gas do to the wall, averaged since the row before.
+inline constexpr std::array<core::ModelInfo, 10> wall_quantities{{
     {"wall_force_x", "x component of the force of the particles on the wall [N]"},
     {"wall_force_y", "y component of the force of the particles on the wall [N]"},
     {"wall_force_z", "z component of the force of the particles on the wall [N]"},
@@ -128,6 +128,9 @@ inline constexpr std::array<core::ModelInfo, 7> wall_quantities{{
     {"wall_torque_y", "y component of the torque of the particles on the wall [N m]"},
     {"wall_torque_z", "z component of the torque of the particles on the wall [N m]"},
     {"wall_contacts", "contacts of particles with the wall at the moment of the row [-]"},
+    {"gas_force_x", "x component of the force of the gas on the wall, pressure and shear [N]"},
+    {"gas_force_y", "y component of the force of the gas on the wall [N]"},
+    {"gas_force_z", "z component of the force of the gas on the wall [N]"},
 }};
 
 /// Columns of a probe of a side through which particles leave.

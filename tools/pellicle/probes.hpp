@@ -29,7 +29,7 @@ struct OutputState {
   const ParticleColumns* particles = nullptr;  ///< null without particles
   const GasFields* gas = nullptr;              ///< null without gas
   ContactFigures contacts{};
-  const std::vector<WallFigures>* walls = nullptr;  ///< null without particles
+  const std::vector<WallFigures>* walls = nullptr;  ///< of all walls of the case
   const SideFigures* sides = nullptr;               ///< null without particles
   const Zones* zones = nullptr;                     ///< null without particles
 

@@ -58,10 +58,8 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
   if (particles_ && gas_) exchange_.emplace(make_exchange(spec_, *gas_));
   if (spec_.heat) heat_.emplace(make_heat_options(spec_), gas_->geometry().volume);
   if (spray_) parcel_gas_ = make_parcel_gas(spec_, exchange_ ? &*exchange_ : nullptr);
-  if (particles_) {
-    for (const WallSpec& wall : spec_.walls) walls_.push_back({wall.name, {}, {}, 0});
-    particles_->hold_walls();  // until t = 0
-  }
+  for (const WallSpec& wall : spec_.walls) walls_.push_back({wall.name, {}, {}, 0, {}});
+  if (particles_) particles_->hold_walls();  // until t = 0
   if (options_.until) time_.end_at(*options_.until);
   checkpoints_ = time_.schedule(spec_.output.checkpoint_every, "output.checkpoint.every");
   // Everything that can be wrong with the input has shown by the end of start(); the folder is touched only then.
@@ -113,6 +111,7 @@ void Simulation::resume() {
     wall.impulse = file.read_vec3(path + "/impulse");
     wall.angular_impulse = file.read_vec3(path + "/angular_impulse");
     wall.contacts = file.read_int64(path + "/contacts");
+    wall.gas_impulse = file.read_vec3(path + "/gas_impulse");
   }
   summary_.gas.load(file);
   settled_gravity_ = file.read_vec3("run/settled_gravity");
@@ -296,10 +295,23 @@ void Simulation::move_gas(int parts) {
     cfd::ParticleExchange felt = exchange_ ? exchange_->exchange() : no_particles_;
     if (heat_) heat_->add_to(felt);
     summary_.gas.add(gas_->update(dt, felt), dt);
+    add_gas_forces(dt);
   }
   if (!coupled()) return;
   const core::Timers::Scope scope(timers_, Part::coupling);
   exchange_->close_step(gas_->state(), dt);
+}
+
+/// What the gas does to the walls that it sees.
+void Simulation::add_gas_forces(Real dt) {
+  const auto& surfaces = gas_->geometry().surfaces;
+  if (surfaces.empty()) return;
+  const std::vector<Vec3> forces = gas_->surface_forces();
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    const auto wall = std::find_if(walls_.begin(), walls_.end(),
+                                   [&](const WallFigures& w) { return w.name == surfaces[s].name; });
+    if (wall != walls_.end()) wall->gas_impulse += dt * forces[s];
+  }
 }
 
 /// t = 0: the particles have settled, the gas begins around them, and the ledger opens.
@@ -480,7 +492,7 @@ void Simulation::write_outputs(bool last) {
     columns = particle_columns();
     state.particles = &columns;
   }
-  if (particles_) state.walls = &walls_;
+  state.walls = &walls_;
   if (particles_) state.zones = &zones_;
   if (particles_) state.sides = &particles_->left_by_side();
   if (gas_) {
@@ -547,6 +559,7 @@ void Simulation::write_checkpoint() {
     file.write(path + "/impulse", walls_[w].impulse);
     file.write(path + "/angular_impulse", walls_[w].angular_impulse);
     file.write(path + "/contacts", walls_[w].contacts);
+    file.write(path + "/gas_impulse", walls_[w].gas_impulse);
   }
   summary_.gas.save(file);
   file.write("run/settled_gravity", settled_gravity_);
@@ -575,13 +588,13 @@ void Simulation::write_summary(const std::string& status, const std::string& mes
   summary_.set_defects(ledger_);
   summary_.threads = Host().concurrency();
   summary_.gas_steps = gas_ ? std::max<std::int64_t>(time_.step(), 0) : 0;
+  summary_.walls = walls_;
   if (particles_) {
     summary_.particles = particles_->particles().count;
     summary_.engine_bytes = static_cast<std::int64_t>(particles_->bytes());
     summary_.contacts_per_particle = contacts_per_particle();
     summary_.particles_left_through_open_sides = particles_->left_through_open_sides();
     summary_.left_by_side = particles_->left_by_side();
-    summary_.walls = walls_;
     summary_.mass_left = particles_->left_mass();
     summary_.particles_fed = 0;
     summary_.mass_fed = 0;

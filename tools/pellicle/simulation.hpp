@@ -66,6 +66,7 @@ class Simulation {
   void deposit_particles(int parts);
   void exchange_heat(int parts);
   void move_gas(int parts);
+  void add_gas_forces(Real dt);
   void release_gas();
   void watch_settling();
 

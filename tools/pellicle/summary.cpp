@@ -136,6 +136,9 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
                                 {"impulse", list(wall.impulse)},
                                 {"angular_impulse", list(wall.angular_impulse)},
                                 {"contacts", wall.contacts}};
+    if (summary.gas.steps == 0) continue;
+    json["walls"][wall.name]["mean_gas_force"] = mean(wall.gas_impulse);
+    json["walls"][wall.name]["gas_impulse"] = list(wall.gas_impulse);
   }
   for (const GasBoundaryFigures& boundary : summary.gas_boundaries) {
     Json& figures = json["gas_boundaries"][boundary.name];
@@ -211,7 +214,8 @@ Summary read_summary(const std::filesystem::path& path) {
           const auto& list = wall.at(key);
           return Vec3{list.at(0), list.at(1), list.at(2)};
         };
-        summary.walls.push_back({name, vector("impulse"), vector("angular_impulse"), wall.at("contacts")});
+        summary.walls.push_back({name, vector("impulse"), vector("angular_impulse"), wall.at("contacts"),
+                                 wall.contains("gas_impulse") ? vector("gas_impulse") : Vec3{}});
       }
     }
     if (json.contains("gas_boundaries")) {

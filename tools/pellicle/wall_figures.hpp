@@ -11,12 +11,13 @@
 
 namespace pellicle::tools {
 
-/// What particles have done to a wall since t = 0, and how many touch it now.
+/// What particles and gas have done to a wall since t = 0, and how many particles touch it now.
 struct WallFigures {
   std::string name;
   Vec3 impulse{};          ///< [N s]
   Vec3 angular_impulse{};  ///< about the wall's torque_about [N m s]
   std::int64_t contacts = 0;
+  Vec3 gas_impulse{};  ///< that the gas gave to it since t = 0: pressure and shear [N s]
 };
 
 /// What has left through each side since the start, settling included; in the order of `domain_sides`.
