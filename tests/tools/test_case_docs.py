@@ -64,7 +64,8 @@ class CaseDocs(unittest.TestCase):
         self.assertIn("koch_hill", drag["enum"])
         self.assertEqual(drag["default"], "beetstra")
         boundary = schema["properties"]["gas"]["properties"]["boundaries"]["items"]
-        self.assertEqual(len(boundary["allOf"][0]["oneOf"]), 5)
+        self.assertEqual(boundary["allOf"][0]["oneOf"], [{"required": ["on"]}, {"required": ["on_wall"]}])
+        self.assertEqual(len(boundary["allOf"][1]["oneOf"]), 5)
 
     def test_models_lists_every_drag_law_with_its_source(self):
         code, text, _ = program("models", "drag")
