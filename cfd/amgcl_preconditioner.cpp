@@ -30,7 +30,7 @@ class AmgclPreconditioner final : public PressurePreconditioner {
     fresh_iterations_ = -1;
   }
 
-  void apply(const HostArray<Real>& r, const HostArray<Real>& z) override {
+  void apply(const HostArray<Real>& r, const HostArray<Real>& z, Real /*size*/) override {
     const auto n = static_cast<Index>(r_.size());
     for_entries("cfd::amgcl::to_float", n,
                 [&](Index c) { r_[static_cast<std::size_t>(c)] = static_cast<float>(r(c)); });

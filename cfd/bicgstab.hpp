@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cfd/field_memory.hpp"
 #include "cfd/fixed_sum.hpp"
 #include "cfd/stencil.hpp"
 #include "core/types.hpp"
@@ -23,12 +24,12 @@ class BiCGStab {
  public:
   explicit BiCGStab(Index size)
       : size_(size),
-        r_("cfd::bicgstab::r", static_cast<std::size_t>(size)),
-        r0_("cfd::bicgstab::r0", static_cast<std::size_t>(size)),
-        p_("cfd::bicgstab::p", static_cast<std::size_t>(size)),
-        v_("cfd::bicgstab::v", static_cast<std::size_t>(size)),
-        s_("cfd::bicgstab::s", static_cast<std::size_t>(size)),
-        t_("cfd::bicgstab::t", static_cast<std::size_t>(size)) {}
+        r_(make_field<Real>("cfd::bicgstab::r", static_cast<std::size_t>(size))),
+        r0_(make_field<Real>("cfd::bicgstab::r0", static_cast<std::size_t>(size))),
+        p_(make_field<Real>("cfd::bicgstab::p", static_cast<std::size_t>(size))),
+        v_(make_field<Real>("cfd::bicgstab::v", static_cast<std::size_t>(size))),
+        s_(make_field<Real>("cfd::bicgstab::s", static_cast<std::size_t>(size))),
+        t_(make_field<Real>("cfd::bicgstab::t", static_cast<std::size_t>(size))) {}
 
   /// Where the right-hand side b is to be put before each solve; the solve overwrites it.
   const HostArray<Real>& right_side() const { return t_; }

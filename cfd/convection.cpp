@@ -1,6 +1,7 @@
 #include "cfd/convection.hpp"
 
 #include "cfd/convection_schemes.hpp"
+#include "cfd/field_memory.hpp"
 
 namespace pellicle::cfd {
 
@@ -10,7 +11,7 @@ ConvectionCorrection::ConvectionCorrection(const FlowGeometry& geometry)
                           "cfd::convection::momentum_flux/z"};
   for (std::size_t a = 0; a < 3; ++a) {
     const auto faces = static_cast<std::size_t>(geometry.stencil.faces(static_cast<int>(a)));
-    momentum_flux[a] = HostArray<Real>(labels[a], 3 * faces);
+    momentum_flux[a] = make_field<Real>(labels[a], 3 * faces);
   }
 }
 

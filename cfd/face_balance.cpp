@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace pellicle::cfd {
 
@@ -44,14 +45,6 @@ void FaceBalance::prepare(const GasFields& fields) {
   }
 }
 
-// Pressure step from the minus to the plus side: -1/2 rho Delta(u^2), with the superficial velocity the same on both.
-Real FaceBalance::pressure_jump(const GasFields& fields, const MomentumEquation& momentum, int axis,
-                                Index f) const {
-  const auto a = static_cast<std::size_t>(axis);
-  return -0.5 * fields.face_density[a](f) * fields.superficial[a](f) *
-         momentum.convection().normal_value[a](f) * kinetic_[a](f);
-}
-
 void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
                           const HostArray<Real>& relaxation, Real dt, PressureMatrix& matrix) {
   const char* labels[] = {"cfd::face_balance::predict_x", "cfd::face_balance::predict_y",
@@ -60,6 +53,8 @@ void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, c
   const Real* eps = fields.void_fraction.data();
   const Real* pressure = fields.pressure.data();
   const Real* volume = geometry_.volume.data();
+  const Real per_density = 1 / options_.density;
+  const Real per_dt = 1 / dt;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const AxisMetrics& metrics = geometry_.axis[a];
@@ -69,31 +64,46 @@ void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, c
     const Real* normal_value = momentum.convection().normal_value[a].data();
     Real* velocity = fields.superficial[a].data();
     const Real* velocity_old = fields.superficial_old[a].data();
-    for_faces(labels[a], geometry_.stencil, axis, [&](Index f, Index m, Index p, Index position, Index) {
-      const auto at = static_cast<std::size_t>(position);
-      const Real wm = metrics.linear_minus[at];
-      const Real wp = 1 - wm;
-      const Real distance = metrics.distance[at];
-      const Real eps_f = void_fraction_[a](f);
-      const Real scale_m = wm / (volume[m] * eps[m]);
-      const Real scale_p = wp / (volume[p] * eps[p]);
-      const Real transport = scale_m * own[m] + scale_p * own[p];
-      const Real relaxed = scale_m * relax[m] + scale_p * relax[p];
-      const Real inflow = wm * in[m] / volume[m] + wp * in[p] / volume[p];
-      const Real rho = fields.face_density[a](f);
-      const Real rho_old = fields.face_density_old[a](f);
-      const Real transient = rho_old * void_fraction_old_[a](f) / (dt * eps_f);
-      // The convective pressure step: implicit where it slows the face down, explicit where it speeds it up.
-      const Real kinetic = 0.5 * rho * normal_value[f] * kinetic_[a](f) * eps_f / distance;
-      const Real braking = std::max(kinetic, Real{0});
-      const Real speeding = std::max(-kinetic, Real{0});
-      const Real stiffness = transient + eps_f * resistance_[a](f) + relaxed + braking;
-      const Real pull = inflow + rho_old * velocity_old[f] / dt + (relaxed + speeding) * velocity[f] +
-                        eps_f * ((pressure[m] - pressure[p]) / distance + force_[a](f));
-      velocity[f] = pull / (stiffness + transport);
-      mobility_[a](f) = eps_f / (stiffness * distance);
-      matrix.coefficient[a](f) = geometry_.area[a](f) * mobility_[a](f) * (rho / options_.density);
-    });
+    for_faces(
+        labels[a], geometry_.stencil, axis,
+        [&](Index f, Index m, Index p, Index position, Index) {
+          const auto at = static_cast<std::size_t>(position);
+          const Real wm = metrics.linear_minus[at];
+          const Real wp = 1 - wm;
+          const Real distance = metrics.distance[at];
+          const Real eps_f = void_fraction_[a](f);
+          const Real scale_m = wm / (volume[m] * eps[m]);
+          const Real scale_p = wp / (volume[p] * eps[p]);
+          const Real transport = scale_m * own[m] + scale_p * own[p];
+          const Real relaxed = scale_m * relax[m] + scale_p * relax[p];
+          const Real inflow = scale_m * eps[m] * in[m] + scale_p * eps[p] * in[p];
+          const Real rho = fields.face_density[a](f);
+          const Real rho_old = fields.face_density_old[a](f);
+          const Real transient = rho_old * void_fraction_old_[a](f) * per_dt / eps_f;
+          // The convective pressure step: implicit where it slows the face down, explicit where it speeds it up.
+          const Real kinetic = 0.5 * rho * normal_value[f] * kinetic_[a](f) * eps_f / distance;
+          const Real braking = std::max(kinetic, Real{0});
+          const Real speeding = std::max(-kinetic, Real{0});
+          const Real stiffness = transient + eps_f * resistance_[a](f) + relaxed + braking;
+          const Real pull = inflow + rho_old * velocity_old[f] * per_dt + (relaxed + speeding) * velocity[f] +
+                            eps_f * ((pressure[m] - pressure[p]) / distance + force_[a](f));
+          velocity[f] = pull / (stiffness + transport);
+          mobility_[a](f) = eps_f / (stiffness * distance);
+          matrix.coefficient[a](f) = geometry_.area[a](f) * mobility_[a](f) * (rho * per_density);
+        },
+        [&](Index face, Index cell) {
+          const Index nx = geometry_.stencil.n.x;
+          for (const FaceField* field : std::initializer_list<const FaceField*>{
+                   &void_fraction_, &void_fraction_old_, &fields.face_density, &fields.face_density_old,
+                   &kinetic_, &resistance_, &force_, &mobility_, &geometry_.area}) {
+            prefetch_row((*field)[a].data() + face, nx);
+          }
+          for (const Real* field : {normal_value, static_cast<const Real*>(velocity), velocity_old,
+                                    static_cast<const Real*>(matrix.coefficient[a].data())}) {
+            prefetch_row(field + face, nx);
+          }
+          for (const Real* field : {volume, eps, own, relax, in, pressure}) prefetch_row(field + cell, nx);
+        });
     copy_periodic_faces(geometry_.stencil, axis, fields.superficial[a]);
     copy_periodic_faces(geometry_.stencil, axis, mobility_[a]);
     copy_periodic_faces(geometry_.stencil, axis, matrix.coefficient[a]);
@@ -267,13 +277,26 @@ void FaceBalance::compute_cell_force(const GasFields& fields, const MomentumEqua
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const AxisMetrics& metrics = geometry_.axis[a];
-    for_faces(labels[a], s, axis, [&](Index f, Index m, Index p, Index position, Index) {
-      const Real distance = metrics.distance[static_cast<std::size_t>(position)];
-      jump_[a](f) = pressure_jump(fields, momentum, axis, f);
-      inertial_[a](f) =
-          void_fraction_[a](f) * ((fields.pressure(m) - fields.pressure(p) + jump_[a](f)) / distance +
-                                  force_[a](f) - resistance_[a](f) * fields.superficial[a](f));
-    });
+    const Real *density = fields.face_density[a].data(), *velocity = fields.superficial[a].data();
+    // Pressure step from the minus to the plus side: -1/2 rho Delta(u^2), with the superficial velocity the same on both.
+    const Real *normal_value = momentum.convection().normal_value[a].data(), *kinetic = kinetic_[a].data();
+    for_faces(
+        labels[a], s, axis,
+        [&](Index f, Index m, Index p, Index position, Index) {
+          const Real distance = metrics.distance[static_cast<std::size_t>(position)];
+          jump_[a](f) = -0.5 * density[f] * velocity[f] * normal_value[f] * kinetic[f];
+          inertial_[a](f) =
+              void_fraction_[a](f) * ((fields.pressure(m) - fields.pressure(p) + jump_[a](f)) / distance +
+                                      force_[a](f) - resistance_[a](f) * velocity[f]);
+        },
+        [&](Index face, Index cell) {
+          const Index nx = s.n.x;
+          for (const FaceField* field : {&void_fraction_, &force_, &resistance_, &jump_, &inertial_}) {
+            prefetch_row((*field)[a].data() + face, nx);
+          }
+          for (const Real* field : {density, velocity, normal_value, kinetic}) prefetch_row(field + face, nx);
+          prefetch_row(fields.pressure.data() + cell, nx);
+        });
     copy_periodic_faces(s, axis, jump_[a]);
     copy_periodic_faces(s, axis, inertial_[a]);
   }
@@ -351,28 +374,48 @@ std::array<Real, 2> FaceBalance::side_gradients(const GasFields& fields, const B
 
 void FaceBalance::compute_pressure_gradient(const GasFields& fields, const HostArray<Vec3>& gradient) const {
   const Stencil& s = geometry_.stencil;
+  const Index n = s.cells();
+  const Index nx = s.n.x;
+  const Real *eps = fields.void_fraction.data(), *beta = fields.exchange_coefficient.data();
+  constexpr Index part = 64;  // cells of a row at a time
   for_rows("cfd::face_balance::pressure_gradient", s, [&](const Index r) {
     const Row row = s.row(r);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const Index step = s.face_step(axis);
-      const Index first = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
-      const Index minus_row = axis == 1 ? row.y_minus : (axis == 2 ? row.z_minus : row.cell);
-      const Index plus_row = axis == 1 ? row.y_plus : (axis == 2 ? row.z_plus : row.cell);
-      const Real* eps = fields.void_fraction.data();
-      along_row(row, s.n.x, [&](Index i, Index left, Index right) {
-        const Index c = row.cell + i;
-        const Real eps_minus = eps[minus_row + (axis == 0 ? left : i)];
-        const Real eps_plus = eps[plus_row + (axis == 0 ? right : i)];
-        const Index along = axis == 0 ? i : (axis == 1 ? row.j : row.k);
-        // The step of the convective acceleration is shared so that the gas loses what its momentum flux, the mean of
-        // both sides', gains: eps_P J eps_N / (eps_P + eps_N) on each side.
-        const Real jumps = jump_[a](first + i) * eps_minus / (eps[c] + eps_minus) +
-                           jump_[a](first + i + step) * eps_plus / (eps[c] + eps_plus);
-        gradient(c)[axis] = 0.5 * (side_gradient(fields, c, axis, first + i) +
-                                   side_gradient(fields, c, axis, first + i + step)) +
-                            jumps / geometry_.axis[a].width[static_cast<std::size_t>(along)];
-      });
+    for (Index begin = 0; begin < nx; begin += part) {
+      const Index count = std::min(part, nx - begin);
+      const Index cell = row.cell + begin;
+      Real found[3][part];
+      Real around[part + 2];  // void fraction along the row, with the neighbours of its ends
+      for (Index i = 0; i < count; ++i) around[i + 1] = eps[cell + i];
+      around[0] = eps[row.cell + (begin > 0 ? begin - 1 : row.before_first)];
+      around[count + 1] = eps[row.cell + (begin + count < nx ? begin + count : row.after_last)];
+      prefetch_row(beta + cell + nx, count);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const Index step = s.face_step(axis);
+        const Index face = (axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face)) + begin;
+        const Real* minus = axis == 0 ? around : eps + begin + (axis == 1 ? row.y_minus : row.z_minus);
+        const Real* plus = axis == 0 ? around + 2 : eps + begin + (axis == 1 ? row.y_plus : row.z_plus);
+        const Real *jump = jump_[a].data() + face, *inertial = inertial_[a].data() + face;
+        const Real *velocity = fields.superficial[a].data() + face, *drag = beta + cell;
+        const Real* force = fields.force.data() + axis * n + cell;
+        const Real body = options_.body_force[axis];
+        const Real* width = geometry_.axis[a].width.data();
+        const Index along = axis == 0 ? begin : (axis == 1 ? row.j : row.k);
+        for (const Real* field : {jump, inertial, velocity}) prefetch_row(field + nx + step, count);
+        prefetch_row(force + nx, count);
+        Real* out = found[axis];
+        for (Index i = 0; i < count; ++i) {
+          const Real own = around[i + 1];
+          // The step of the convective acceleration is shared so that the gas loses what its momentum flux, the mean of
+          // both sides', gains: eps_P J eps_N / (eps_P + eps_N) on each side.
+          const Real jumps =
+              jump[i] * minus[i] / (own + minus[i]) + jump[i + step] * plus[i] / (own + plus[i]);
+          const Real held =
+              inertial[i] + inertial[i + step] + drag[i] / own * (velocity[i] + velocity[i + step]);
+          out[i] = body + (force[i] - 0.5 * held) / own + jumps / width[axis == 0 ? along + i : along];
+        }
+      }
+      for (Index i = 0; i < count; ++i) gradient(cell + i) = {found[0][i], found[1][i], found[2][i]};
     }
   });
   // The same with both sides' gradients as they are beside closed faces, whose jump is 0.

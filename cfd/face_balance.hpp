@@ -48,7 +48,6 @@ class FaceBalance {
  private:
   void clear_closed_faces(const FaceField& field) const;
   void block_cell_force(const GasFields& fields, const HostArray<Real>& force) const;
-  Real pressure_jump(const GasFields& fields, const MomentumEquation& momentum, int axis, Index face) const;
   void predict_outlets(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
                        const HostArray<Real>& relaxation, Real dt, PressureMatrix& matrix);
   void set_boundary_inertia(const GasFields& fields);

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "cfd/field_memory.hpp"
+
 namespace pellicle::cfd {
 
 namespace {
@@ -52,8 +54,8 @@ FaceField make_face_field(const Stencil& stencil, const char* label) {
   FaceField field;
   const char* names[] = {"/x", "/y", "/z"};
   for (std::size_t a = 0; a < 3; ++a) {
-    field[a] = HostArray<Real>(std::string(label) + names[a],
-                               static_cast<std::size_t>(stencil.faces(static_cast<int>(a))));
+    field[a] = make_field<Real>(std::string(label) + names[a],
+                                static_cast<std::size_t>(stencil.faces(static_cast<int>(a))));
   }
   return field;
 }
@@ -64,7 +66,7 @@ FlowGeometry::FlowGeometry(const CartesianGrid& g) : grid(g) {
     stencil.periodic[static_cast<std::size_t>(a)] = grid.periodic(a);
     axis[static_cast<std::size_t>(a)] = make_metrics(grid, a);
   }
-  volume = HostArray<Real>("cfd::flow_geometry::volume", static_cast<std::size_t>(stencil.cells()));
+  volume = make_field<Real>("cfd::flow_geometry::volume", static_cast<std::size_t>(stencil.cells()));
   area = make_face_field(stencil, "cfd::flow_geometry::area");
   const Index3 n = stencil.n;
   for (Index k = 0; k < n.z; ++k) {

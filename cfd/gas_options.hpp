@@ -28,7 +28,7 @@ inline constexpr core::ModelInfo convection_models[] = {
 
 /// Which solver the pressure equation gets; both give the same answer to within the tolerance.
 enum class PressureSolver {
-  multigrid,  ///< conjugate gradients with a geometric multigrid cycle on the 7-point stencil, rebuilt every solve
+  multigrid,  ///< conjugate gradients with a geometric multigrid cycle on the 7-point stencil
   amgcl       ///< conjugate gradients with AMGCL's smoothed aggregation, hierarchy kept while it still serves
 };
 

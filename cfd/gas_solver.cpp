@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cfd/field_memory.hpp"
 #include "cfd/gas_solver_impl.hpp"
 #include "core/error.hpp"
 
@@ -14,8 +15,12 @@ namespace pellicle::cfd {
 
 namespace {
 
+// Relative, of the momentum solve of a step's first iteration. What it leaves is far less than what the new pressure
+// changes.
+constexpr Real rough_momentum_tolerance = 1e-4;
+
 HostArray<Real> make_array(const char* label, Index size) {
-  return HostArray<Real>(std::string(label), static_cast<std::size_t>(size));
+  return make_field<Real>(label, static_cast<std::size_t>(size));
 }
 
 void check_options(const GasOptions& o) {
@@ -73,6 +78,7 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
   rhs = make_array("cfd::gas_solver::rhs", n);
   correction = make_array("cfd::gas_solver::correction", n);
   before = make_face_field(geometry.stencil, "cfd::gas_solver::before");
+  for (const Real width : geometry.axis[0].width) inverse_width.push_back(1 / width);
   state.velocity = HostArray<Vec3>("cfd::gas_solver::velocity", static_cast<std::size_t>(n));
   state.pressure_gradient =
       HostArray<Vec3>("cfd::gas_solver::pressure_gradient", static_cast<std::size_t>(n));
@@ -91,6 +97,7 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
     state.turbulent_dissipation = turbulence->epsilon();
     state.eddy_viscosity = fields.eddy_viscosity;
   }
+  memory.close();
 }
 
 void GasSolver::Impl::initialise(const HostArray<Real>& given_void_fraction) {
@@ -142,6 +149,19 @@ void GasSolver::Impl::initialise(const HostArray<Real>& given_void_fraction) {
   balance.momentum_initial = balance.momentum;
 }
 
+void GasSolver::Impl::check_exchange(const ParticleExchange& exchange) {
+  const Real *eps = exchange.void_fraction.data(), *beta = exchange.exchange_coefficient.data();
+  const auto is_bad = [=](Index c) {
+    return !(eps[c] > 0 && eps[c] <= 1 + 1e-9 && beta[c] >= 0 && std::isfinite(beta[c]));
+  };
+  if (sum("cfd::gas_solver::bad_exchange", fields.cells, [=](Index c) { return is_bad(c) ? 1.0 : 0.0; }) == 0)
+    return;
+  Index c = 0;
+  while (!is_bad(c)) ++c;
+  if (!(eps[c] > 0 && eps[c] <= 1 + 1e-9)) fail(fmt::format("the void fraction is {}", eps[c]), c);
+  fail(fmt::format("the momentum exchange coefficient is {}", beta[c]), c);
+}
+
 void GasSolver::Impl::take_exchange(const ParticleExchange& exchange, Real dt) {
   const Index n = fields.cells;
   const auto size = static_cast<std::size_t>(n);
@@ -154,18 +174,14 @@ void GasSolver::Impl::take_exchange(const ParticleExchange& exchange, Real dt) {
   Kokkos::deep_copy(fields.void_fraction_old, fields.void_fraction);
   for (std::size_t a = 0; a < 3; ++a) Kokkos::deep_copy(fields.superficial_old[a], fields.superficial[a]);
   fields.piece_flow_old = fields.piece_flow;
-  for (Index c = 0; c < n; ++c) {
-    const Real eps = exchange.void_fraction(c);
-    const Real beta = exchange.exchange_coefficient(c);
-    if (!(eps > 0 && eps <= 1 + 1e-9)) fail(fmt::format("the void fraction is {}", eps), c);
-    if (!(beta >= 0 && std::isfinite(beta)))
-      fail(fmt::format("the momentum exchange coefficient is {}", beta), c);
-    if (!(geometry.volume(c) > 0)) continue;
-    fields.void_fraction(c) = eps;
-    fields.exchange_coefficient(c) = beta;
+  check_exchange(exchange);
+  for_entries("cfd::gas_solver::take_exchange", n, [&](Index c) {
+    if (!(geometry.volume(c) > 0)) return;
+    fields.void_fraction(c) = exchange.void_fraction(c);
+    fields.exchange_coefficient(c) = exchange.exchange_coefficient(c);
     const Vec3 force = exchange.explicit_force(c);
     for (int a = 0; a < 3; ++a) fields.force(c + a * n) = force[a];
-  }
+  });
   scalars.prepare(fields);
   if (turbulence) turbulence->prepare(fields);
   for_entries("cfd::gas_solver::buoyancy", n, [&](Index c) {
@@ -208,18 +224,19 @@ void GasSolver::Impl::assemble_momentum(Real dt) {
   momentum.assemble(fields);
   const Index n = fields.cells;
   const Real keep = (1 - options.solver.velocity_relaxation) / options.solver.velocity_relaxation;
-  for_entries("cfd::gas_solver::inertia", n, [&](Index c) {
-    // A cell without gas takes part with a velocity of 0: any diagonal will do.
-    const Real own_inertia =
-        geometry.volume(c) > 0
-            ? geometry.volume(c) *
-                  (fields.density_old(c) * fields.void_fraction_old(c) / dt + fields.exchange_coefficient(c))
-            : 1;
-    for (Index e = c; e < 3 * n; e += n) {
-      relaxation(e) = keep * (momentum.own()(e) + own_inertia);
-      inertia(e) = own_inertia + relaxation(e);
-    }
-  });
+  const Real *volume = geometry.volume.data(), *rho_old = fields.density_old.data();
+  const Real *eps_old = fields.void_fraction_old.data(), *beta = fields.exchange_coefficient.data();
+  const Real per_dt = 1 / dt;
+  for (int a = 0; a < 3; ++a) {
+    const Real* own = momentum.own().data() + a * n;
+    Real *held = relaxation.data() + a * n, *sum_of = inertia.data() + a * n;
+    for_entries("cfd::gas_solver::inertia", n, [=](Index c) {
+      // A cell without gas takes part with a velocity of 0: any diagonal will do.
+      const Real own_inertia = volume[c] > 0 ? volume[c] * (rho_old[c] * eps_old[c] * per_dt + beta[c]) : 1;
+      held[c] = keep * (own[c] + own_inertia);
+      sum_of[c] = own_inertia + held[c];
+    });
+  }
 }
 
 void GasSolver::Impl::update_mass_flux() {
@@ -232,26 +249,46 @@ void GasSolver::Impl::update_mass_flux() {
   }
 }
 
+// Of the gas in a cell, over the density of reference, per volume of cell and second.
+Real GasSolver::Impl::growth_of_gas(Real eps, Real eps_old, Real rho, Real rho_old, Real dt) const {
+  const Real per_density = 1 / options.density;
+  return (eps * (rho * per_density) - eps_old * (rho_old * per_density)) / dt;
+}
+
 // rhs = -(mass that leaves the cell + growth of its gas - vapour that becomes gas) per second, over the density of
 // reference: a volume where the density is constant.
 Real GasSolver::Impl::compute_continuity_residual(Real dt) {
   const Stencil& s = geometry.stencil;
+  const Real per_density = 1 / options.density;
+  const Real *eps = fields.void_fraction.data(), *eps_old = fields.void_fraction_old.data();
+  const Real *rho = fields.density.data(), *rho_old = fields.density_old.data();
+  const Real *volume = geometry.volume.data(), *given = fields.mass_source.data();
+  Real* result = rhs.data();
   for_rows("cfd::gas_solver::continuity", s, [&](const Index r) {
     const Row row = s.row(r);
-    for (Index i = 0; i < s.n.x; ++i) {
-      const Index c = row.cell + i;
-      Real out = geometry.volume(c) * (growth_of_gas(c, dt) - fields.mass_source(c) / options.density);
-      const Index first[3] = {row.x_face + i, row.y_face + i, row.z_face + i};
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        const Index f = first[axis];
-        const Index g = f + s.face_step(axis);
-        // The density of boundary faces is 0: what flows there follows below.
-        out +=
-            geometry.area[a](g) * fields.superficial[a](g) * (fields.face_density[a](g) / options.density) -
-            geometry.area[a](f) * fields.superficial[a](f) * (fields.face_density[a](f) / options.density);
+    const Index nx = s.n.x;
+    const Index next = row.cell + nx;
+    for (const Real* field : {eps, eps_old, rho, rho_old, volume, given}) prefetch_row(field + next, nx);
+#pragma GCC ivdep
+    for (Index c = row.cell; c < next; ++c) {
+      result[c] =
+          volume[c] * (given[c] * per_density - growth_of_gas(eps[c], eps_old[c], rho[c], rho_old[c], dt));
+    }
+    const Index first[3] = {row.x_face, row.y_face, row.z_face};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const Index step = s.face_step(axis);
+      // The density of boundary faces is 0: what flows there follows below.
+      const Real* area = geometry.area[a].data() + first[axis];
+      const Real* velocity = fields.superficial[a].data() + first[axis];
+      const Real* density = fields.face_density[a].data() + first[axis];
+      for (const Real* field : {area, velocity, density}) prefetch_row(field + nx + step, nx);
+      Real* out = result + row.cell;
+#pragma GCC ivdep
+      for (Index i = 0; i < nx; ++i) {
+        out[i] -= area[i + step] * velocity[i + step] * (density[i + step] * per_density) -
+                  area[i] * velocity[i] * (density[i] * per_density);
       }
-      rhs(c) = -out;
     }
   });
   for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
@@ -260,17 +297,14 @@ Real GasSolver::Impl::compute_continuity_residual(Real dt) {
   return sum("cfd::gas_solver::continuity_sum", s.cells(), [&](Index c) { return std::abs(rhs(c)); });
 }
 
-// Of the gas in a cell, over the density of reference, per volume of cell and second.
-Real GasSolver::Impl::growth_of_gas(Index c, Real dt) const {
-  return (fields.void_fraction(c) * (fields.density(c) / options.density) -
-          fields.void_fraction_old(c) * (fields.density_old(c) / options.density)) /
-         dt;
-}
-
 // Volume flow through a typical section of the domain, plus what moving particles displace [m3/s].
 Real GasSolver::Impl::gas_throughput(Real dt) {
-  Real total = sum("cfd::gas_solver::displaced", fields.cells,
-                   [&](Index c) { return geometry.volume(c) * std::abs(growth_of_gas(c, dt)); });
+  const Real *eps = fields.void_fraction.data(), *eps_old = fields.void_fraction_old.data();
+  const Real *rho = fields.density.data(), *rho_old = fields.density_old.data(),
+             *volume = geometry.volume.data();
+  Real total = sum("cfd::gas_solver::displaced", fields.cells, [&](Index c) {
+    return volume[c] * std::abs(growth_of_gas(eps[c], eps_old[c], rho[c], rho_old[c], dt));
+  });
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const Index count = geometry.stencil.faces(axis);
@@ -314,17 +348,21 @@ void GasSolver::Impl::solve_pressure(Real dt, bool tightly, StepReport& report) 
   report.continuity_residual = throughput > 0 ? linear.residual / throughput : 0;
 }
 
-void GasSolver::Impl::solve_momentum(Real dt, bool tightly, StepReport& report) {
+void GasSolver::Impl::solve_momentum(Real dt, Real tolerance, StepReport& report) {
   const Index n = fields.cells;
   faces.compute_cell_force(fields, momentum, cell_force);
-  for_entries("cfd::gas_solver::cell_force", n, [&](Index c) {
-    const Real mass = fields.density_old(c) * fields.void_fraction_old(c) * geometry.volume(c) / dt;
-    for (Index e = c; e < 3 * n; e += n) {
-      cell_force(e) += mass * fields.velocity_old(e) + relaxation(e) * fields.velocity(e);
-    }
-  });
-  const TransportReport linear =
-      momentum.solve(fields, inertia, cell_force, options.solver.momentum_tolerance * (tightly ? 1 : 100));
+  const Real *volume = geometry.volume.data(), *rho_old = fields.density_old.data();
+  const Real* eps_old = fields.void_fraction_old.data();
+  const Real per_dt = 1 / dt;
+  for (int a = 0; a < 3; ++a) {
+    Real* force = cell_force.data() + a * n;
+    const Real *u = fields.velocity.data() + a * n, *u_old = fields.velocity_old.data() + a * n;
+    const Real* relaxed = relaxation.data() + a * n;
+    for_entries("cfd::gas_solver::cell_force", n, [=](Index c) {
+      force[c] += rho_old[c] * eps_old[c] * volume[c] * per_dt * u_old[c] + relaxed[c] * u[c];
+    });
+  }
+  const TransportReport linear = momentum.solve(fields, inertia, cell_force, tolerance);
   report.momentum_iterations += linear.iterations;
   report.momentum_residual = linear.residual;
   if (!linear.converged) {
@@ -332,88 +370,6 @@ void GasSolver::Impl::solve_momentum(Real dt, bool tightly, StepReport& report) 
                      linear.iterations, linear.residual),
          worst_cell());
   }
-}
-
-Real GasSolver::Impl::face_velocity_change() const {
-  Real change = 0;
-  Real largest = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t f = 0; f < before[a].extent(0); ++f) {
-      change = std::max(change, std::abs(fields.superficial[a](f) - before[a](f)));
-      largest = std::max(largest, std::abs(fields.superficial[a](f)));
-    }
-  }
-  return largest > 0 ? change / largest : 0;
-}
-
-// A cell beside the face whose velocity the last outer iteration changed most.
-Index GasSolver::Impl::most_changed_cell() const {
-  Index worst = 0;
-  Real largest = -1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const Index step = geometry.stencil.face_step(axis);
-    for (Index r = 0; r < geometry.stencil.rows(); ++r) {
-      const Row row = geometry.stencil.row(r);
-      const Index first = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
-      for (Index i = 0; i < geometry.stencil.n.x; ++i) {
-        for (const Index f : {first + i, first + i + step}) {
-          const Real change = std::abs(fields.superficial[a](f) - before[a](f));
-          if (change <= largest) continue;
-          largest = change;
-          worst = row.cell + i;
-        }
-      }
-    }
-  }
-  return worst;
-}
-
-// Relative change of a cell's gas in the step that the fluxes do not account for.
-Real GasSolver::Impl::find_divergence(Real dt) {
-  compute_continuity_residual(dt);
-  Real largest = 0;
-  for (Index c = 0; c < fields.cells; ++c) {
-    const Real volume = geometry.volume(c);
-    if (volume > 0) largest = std::max(largest, std::abs(rhs(c)) * dt / volume);
-  }
-  return largest;
-}
-
-void GasSolver::Impl::fail(const std::string& what, Index cell) const {
-  const Index3 at = geometry.grid.coordinates(cell);
-  throw RunError(fmt::format("gas: {}, in cell ({}, {}, {}) at ({:.6g}, {:.6g}, {:.6g}) m, at t = {:.9g} s",
-                             what, at.x, at.y, at.z, geometry.grid.center(0, at.x),
-                             geometry.grid.center(1, at.y), geometry.grid.center(2, at.z), state.time));
-}
-
-// The cell that is not finite, else the one with the largest mass residual.
-Index GasSolver::Impl::worst_cell() const {
-  Index worst = 0;
-  for (Index c = 0; c < fields.cells; ++c) {
-    if (!std::isfinite(rhs(c) + fields.velocity(c))) return c;
-    if (std::abs(rhs(c)) > std::abs(rhs(worst))) worst = c;
-  }
-  return worst;
-}
-
-Real GasSolver::Impl::check_and_find_courant(Real dt) const {
-  const Stencil& s = geometry.stencil;
-  Real courant = 0;
-  for (Index k = 0; k < s.n.z; ++k) {
-    for (Index j = 0; j < s.n.y; ++j) {
-      for (Index i = 0; i < s.n.x; ++i) {
-        const Index c = s.cell(i, j, k);
-        const Vec3 u = state.velocity(c);
-        const Real own = dt * (std::abs(u.x) / geometry.axis[0].width[static_cast<std::size_t>(i)] +
-                               std::abs(u.y) / geometry.axis[1].width[static_cast<std::size_t>(j)] +
-                               std::abs(u.z) / geometry.axis[2].width[static_cast<std::size_t>(k)]);
-        if (!std::isfinite(own + fields.pressure(c))) fail("velocity or pressure is no longer finite", c);
-        courant = std::max(courant, own);
-      }
-    }
-  }
-  return courant;
 }
 
 void GasSolver::Impl::copy_velocity_to_state() {
@@ -442,83 +398,6 @@ void GasSolver::Impl::finish_step(Real dt, const ParticleExchange& exchange, Ste
     report.scalar_cells_returned += eddies.returned;
   }
   state.time += dt;
-}
-
-void GasSolver::Impl::update_stocks() {
-  const Index n = fields.cells;
-  const auto mass = [&](Index c) { return fields.density(c) * geometry.volume(c) * fields.void_fraction(c); };
-  balance.mass = sum("cfd::gas_solver::mass", n, mass);
-  for (int a = 0; a < 3; ++a) {
-    balance.momentum[a] =
-        sum("cfd::gas_solver::momentum", n, [&](Index c) { return mass(c) * fields.velocity(c + a * n); });
-  }
-}
-
-void GasSolver::Impl::add_to_balance(Real dt, const ParticleExchange& exchange) {
-  update_stocks();
-  const Index n = fields.cells;
-  Vec3 convected, pressed, sheared;
-  for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
-    const BoundaryPiece& piece = boundaries.pieces[b];
-    convected += dt * momentum.convected_inflow(fields, b);
-    sheared += dt * momentum.shear_force(fields, b);
-    if (!piece.is_immersed()) {
-      pressed[piece.axis] -= dt * piece.outward * piece.area * faces.boundary_pressure(fields, b);
-    }
-    if (piece.patch < 0) continue;
-    PatchBalance& patch = balance.patches[static_cast<std::size_t>(piece.patch)];
-    const Real out = fields.piece_density[b] * fields.piece_flow[b] * dt;
-    (out > 0 ? patch.mass_out : patch.mass_in) += std::abs(out);
-  }
-  Index done = -1;
-  for (std::size_t b = 0; b < geometry.pieces.size(); ++b) {
-    sheared += dt * momentum.surface_shear(fields, b);
-    // Pieces come in the order of their cells.
-    const Index c = geometry.pieces[b].cell;
-    if (c != done) pressed += dt * faces.surface_pressure_force(fields, c);
-    done = c;
-  }
-  const auto total = [&](const char* label, auto&& term) {
-    Vec3 result;
-    for (int a = 0; a < 3; ++a) {
-      result[a] = dt * sum(label, n, [&](Index c) { return geometry.volume(c) * term(c, a); });
-    }
-    return result;
-  };
-  const Vec3 body = total("cfd::gas_solver::body_impulse", [&](Index c, int a) {
-    return fields.void_fraction(c) * (options.body_force[a] + fields.excess_density(c) * options.gravity[a]);
-  });
-  const bool gaining = exchange.mass_source.extent(0) > 0;
-  const Vec3 vapour = total("cfd::gas_solver::vapour_impulse", [&](Index c, int a) {
-    return gaining ? exchange.mass_source_momentum(c)[a] : 0;
-  });
-  if (gaining) {
-    balance.mass_given += dt * sum("cfd::gas_solver::mass_given", n,
-                                   [&](Index c) { return geometry.volume(c) * exchange.mass_source(c); });
-  }
-  const Vec3 drag = total("cfd::gas_solver::drag_impulse", [&](Index c, int a) {
-    const Real own = fields.exchange_coefficient(c) - fields.mass_source(c);
-    const Real buoyancy = fields.void_fraction(c) * fields.excess_density(c) * options.gravity[a];
-    return fields.force(c + a * n) - own * fields.velocity(c + a * n) - buoyancy -
-           (gaining ? exchange.mass_source_momentum(c)[a] : 0);
-  });
-  const Vec3 particle_pressure = total("cfd::gas_solver::pressure_impulse", [&](Index c, int a) {
-    return (1 - fields.void_fraction(c)) * state.pressure_gradient(c)[a];
-  });
-  for (const Vec3& part : {convected, pressed, sheared, body, drag, particle_pressure, vapour}) {
-    for (int a = 0; a < 3; ++a) balance.gross[a] += std::abs(part[a]);
-  }
-  // Buoyancy lifts here and presses down there: what it exchanges is more than its sum.
-  balance.gross += total("cfd::gas_solver::gross_buoyancy", [&](Index c, int a) {
-    return fields.void_fraction(c) * std::abs(fields.excess_density(c) * options.gravity[a]);
-  });
-  balance.convected += convected;
-  balance.boundary_pressure += pressed;
-  balance.boundary_shear += sheared;
-  balance.body_force += body;
-  balance.drag += drag;
-  balance.vapour += vapour;
-  balance.particle_pressure += particle_pressure;
 }
 
 GasSolver::GasSolver(const CartesianGrid& grid, const GasOptions& options, std::vector<BoundaryPatch> patches,
@@ -563,21 +442,25 @@ StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
   s.momentum.prepare(s.fields, dt);
   s.faces.prepare(s.fields);
   // SIMPLEC: fluxes first, then velocities that satisfy the momentum balance with these very fluxes and this
-  // pressure, so that a step ends with both balances closed.
+  // pressure, so that a step ends with both balances closed. The first of several iterations only has to say what the
+  // velocities will be like: they follow from its coefficients, roughly.
   bool done = false;
   while (!done) {
     ++report.outer_iterations;
+    const bool first = report.outer_iterations == 1;
     const bool last = report.outer_iterations >= options.max_outer_iterations;
-    const bool nearly_there =
-        report.outer_iterations > 1 && report.velocity_change < 10 * options.outer_tolerance;
+    const bool nearly_there = !first && !last && report.velocity_change < 10 * options.outer_tolerance;
     for (std::size_t a = 0; a < 3; ++a) Kokkos::deep_copy(s.before[a], s.fields.superficial[a]);
-    // Later iterations go on with the coefficients of the momentum equation just solved.
-    if (report.outer_iterations == 1) s.assemble_momentum(dt);
+    // Later iterations go on with the coefficients of the momentum equation at hand.
+    if (first) s.assemble_momentum(dt);
     const bool tightly = last || nearly_there;
     s.solve_pressure(dt, tightly, report);
-    s.assemble_momentum(dt);
-    s.solve_momentum(dt, tightly, report);
-    report.velocity_change = s.face_velocity_change();
+    if (last || !first) s.assemble_momentum(dt);
+    const Real rough = std::max(rough_momentum_tolerance, options.momentum_tolerance);
+    const Real loose = first ? rough : 100 * options.momentum_tolerance;
+    s.solve_momentum(dt, tightly ? options.momentum_tolerance : loose, report);
+    // Before the last of a fixed number of iterations nothing follows from it.
+    if (!first || last || options.max_outer_iterations > 2) report.velocity_change = s.face_velocity_change();
     done = last || (nearly_there && report.velocity_change < options.outer_tolerance);
   }
   report.converged = report.velocity_change < options.outer_tolerance;
@@ -590,109 +473,5 @@ StepReport GasSolver::update(Real dt, const ParticleExchange& exchange) {
   s.finish_step(dt, exchange, report);
   return report;
 }
-
-Real GasSolver::courant_number(Real dt) const {
-  const Impl& s = *impl_;
-  const Stencil& stencil = s.geometry.stencil;
-  Real largest = 0;
-  for (Index r = 0; r < stencil.rows(); ++r) {
-    const Row row = stencil.row(r);
-    const Index first[3] = {row.x_face, row.y_face, row.z_face};
-    for (Index i = 0; i < stencil.n.x; ++i) {
-      const Index place[3] = {i, row.j, row.k};
-      Real own = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        const Index f = first[axis] + i;
-        const Real fastest = std::max(std::abs(s.fields.superficial[a](f)),
-                                      std::abs(s.fields.superficial[a](f + stencil.face_step(axis))));
-        own += fastest / s.geometry.axis[a].width[static_cast<std::size_t>(place[axis])];
-      }
-      largest = std::max(largest, own * dt / s.fields.void_fraction(row.cell + i));
-    }
-  }
-  return largest;
-}
-
-const CartesianGrid& GasSolver::grid() const { return impl_->geometry.grid; }
-const FlowGeometry& GasSolver::geometry() const { return impl_->geometry; }
-const GasOptions& GasSolver::options() const { return impl_->options; }
-
-Vec3 GasSolver::surface_force(std::size_t surface) const { return surface_forces().at(surface); }
-
-std::vector<Vec3> GasSolver::surface_forces() const {
-  const Impl& s = *impl_;
-  const auto& pieces = s.geometry.pieces;
-  std::vector<Vec3> total(s.geometry.surfaces.size());
-  for (std::size_t first = 0; first < pieces.size();) {
-    // The pressure on the surfaces of a cell is shared by their areas.
-    std::size_t end = first;
-    Real all = 0;
-    for (; end < pieces.size() && pieces[end].cell == pieces[first].cell; ++end) all += pieces[end].area;
-    const Vec3 pressure = s.faces.surface_pressure_force(s.fields, pieces[first].cell);
-    for (; first < end; ++first) {
-      Vec3& own = total[static_cast<std::size_t>(pieces[first].surface)];
-      own -= s.momentum.surface_shear(s.fields, first);
-      if (all > 0) own -= (pieces[first].area / all) * pressure;
-    }
-  }
-  return total;
-}
-const GasState& GasSolver::state() const { return impl_->state; }
-const GasBalance& GasSolver::balance() const { return impl_->balance; }
-const ScalarBalance* GasSolver::balance(Scalar scalar) const {
-  const auto& transport = impl_->scalars[scalar];
-  return transport ? &transport->balance() : nullptr;
-}
-
-Real GasSolver::patch_pressure(const std::string& name) const {
-  const Impl& s = *impl_;
-  const auto& names = s.boundaries.patch_names;
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw std::invalid_argument("the gas has no boundary '" + name + "'");
-  const int patch = static_cast<int>(found - names.begin());
-  Real force = 0;
-  Real area = 0;
-  for (std::size_t b = 0; b < s.boundaries.pieces.size(); ++b) {
-    const BoundaryPiece& piece = s.boundaries.pieces[b];
-    if (piece.patch != patch) continue;
-    Real pressure = piece.pressure;
-    if (piece.kind != PieceKind::outlet) {
-      pressure = piece.is_immersed() ? s.fields.pressure(piece.cell) : s.faces.boundary_pressure(s.fields, b);
-    }
-    force += piece.area * pressure;
-    area += piece.area;
-  }
-  return force / area;
-}
-
-Real GasSolver::pressure_drop(const std::string& from, const std::string& to) const {
-  return patch_pressure(from) - patch_pressure(to);
-}
-
-Real GasSolver::plane_pressure(int axis, Real coordinate) const {
-  const Impl& s = *impl_;
-  const Stencil& stencil = s.geometry.stencil;
-  const CartesianGrid& grid = s.geometry.grid;
-  const auto mean = [&](Index layer) {
-    Real force = 0;
-    Real area = 0;
-    for (Index c = 0; c < stencil.cells(); ++c) {
-      const Index3 at = grid.coordinates(c);
-      if (at[axis] != layer) continue;
-      const Real own = s.geometry.volume(c) / grid.width(axis, layer);
-      force += own * s.fields.pressure(c);
-      area += own;
-    }
-    return force / area;
-  };
-  const Index i = grid.locate(axis, coordinate);
-  const Index other = coordinate >= grid.center(axis, i) ? i + 1 : i - 1;
-  if (other < 0 || other >= stencil.n[axis]) return mean(i);
-  const Real w = (coordinate - grid.center(axis, i)) / (grid.center(axis, other) - grid.center(axis, i));
-  return (1 - w) * mean(i) + w * mean(other);
-}
-
-void GasSolver::drop_solver_hierarchies() { impl_->pressure_solver.drop(); }
 
 }  // namespace pellicle::cfd

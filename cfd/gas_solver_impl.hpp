@@ -7,6 +7,7 @@
 
 #include "cfd/boundary_pieces.hpp"
 #include "cfd/face_balance.hpp"
+#include "cfd/field_memory.hpp"
 #include "cfd/fixed_sum.hpp"
 #include "cfd/flow_geometry.hpp"
 #include "cfd/gas_fields.hpp"
@@ -23,26 +24,28 @@ struct GasSolver::Impl {
        const ImmersedGeometry& immersed);
 
   void initialise(const HostArray<Real>& void_fraction);
+  void check_exchange(const ParticleExchange& exchange);
   void take_exchange(const ParticleExchange& exchange, Real dt);
   void assemble_momentum(Real dt);
   Real compute_continuity_residual(Real dt);
-  Real growth_of_gas(Index cell, Real dt) const;
+  Real growth_of_gas(Real eps, Real eps_old, Real rho, Real rho_old, Real dt) const;
   Real gas_throughput(Real dt);
   void solve_pressure(Real dt, bool tightly, StepReport& report);
-  void solve_momentum(Real dt, bool tightly, StepReport& report);
+  void solve_momentum(Real dt, Real tolerance, StepReport& report);
   void update_mass_flux();
-  Real face_velocity_change() const;
+  Real face_velocity_change();
   void take_mass_source(const ParticleExchange& exchange, Real dt);
   void finish_step(Real dt, const ParticleExchange& exchange, StepReport& report);
   void add_to_balance(Real dt, const ParticleExchange& exchange);
   void update_stocks();
   void copy_velocity_to_state();
-  Real check_and_find_courant(Real dt) const;
+  Real check_and_find_courant(Real dt);
   Real find_divergence(Real dt);
   Index most_changed_cell() const;
   [[noreturn]] void fail(const std::string& what, Index cell) const;
   Index worst_cell() const;
 
+  FieldMemory memory;  ///< before the fields
   FlowGeometry geometry;
   GasOptions options;
   std::vector<BoundaryPatch> patches;
@@ -58,7 +61,9 @@ struct GasSolver::Impl {
   std::optional<KEpsilon> turbulence;
 
   HostArray<Real> influx, inertia, relaxation, cell_force, rhs, correction;
-  FaceField before;  ///< face velocities at the start of an outer iteration
+  FaceField before;                 ///< face velocities at the start of an outer iteration
+  std::vector<Real> inverse_width;  ///< of cells along x [1/m]
+  std::vector<Real> row_courant;    ///< largest of each row of cells
   FixedSum sum;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "cfd/field_memory.hpp"
 #include "cfd/velocity_gradient.hpp"
 
 namespace pellicle::cfd {
@@ -11,7 +12,7 @@ namespace pellicle::cfd {
 namespace {
 
 HostArray<Real> make_array(const std::string& label, Index size) {
-  return HostArray<Real>(label, static_cast<std::size_t>(size));
+  return make_field<Real>(label, static_cast<std::size_t>(size));
 }
 
 }  // namespace
@@ -77,6 +78,19 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
   own_ = make_array("cfd::momentum::own", 3 * n);
   source_ = make_array("cfd::momentum::source", 3 * n);
   inverse_ = make_array("cfd::momentum::inverse", 3 * n);
+  packed_ = make_field<float>("cfd::momentum::packed", static_cast<std::size_t>(15 * n));
+  defect_ = make_field<float>("cfd::momentum::defect", static_cast<std::size_t>(3 * n));
+  for (auto& one : trial_) one = make_field<float>("cfd::momentum::trial", static_cast<std::size_t>(3 * n));
+  const Stencil& s = geometry.stencil;
+  // Around an odd periodic axis two rows of one colour are neighbours.
+  // A wall without shear mirrors the flow: beyond it a cell's neighbour is the cell itself, at the end of a row too.
+  for (const BoundaryPiece& piece : boundaries.pieces) {
+    if (piece.kind == PieceKind::slip && piece.axis == 0) open_ends_ = false;
+  }
+  if (s.periodic[0]) open_ends_ = false;
+  coloured_ =
+      !(s.periodic[1] && s.n.y % 2 == 1 && s.n.y > 1) && !(s.periodic[2] && s.n.z % 2 == 1 && s.n.z > 1);
+  row_change_.assign(static_cast<std::size_t>(s.rows()), 0);
 }
 
 void MomentumEquation::prepare(const GasFields& fields, Real dt) {
@@ -140,9 +154,21 @@ void MomentumEquation::assemble(const GasFields& fields) {
         own[b] = &own_(row.cell + b * n);
         source[b] = &source_(row.cell + b * n);
       }
+      const Index nx = s.n.x;
+      for (const Real* next : {flux, conductance, tangential, extra, extra + faces, extra + 2 * faces}) {
+        prefetch_row(next + nx + step, nx);
+      }
+      for (const Real* next : {near_minus, near_plus, normal_minus, normal_plus}) prefetch_row(next + nx, nx);
+      if (axis == 0) {
+        for (int b = 0; b < 3; ++b) {
+          prefetch_row(own[b] + nx, nx);
+          prefetch_row(source[b] + nx, nx);
+        }
+        prefetch_row(eps + row.cell + nx + s.face_step(2), nx);
+      }
       const int t1 = (axis + 1) % 3;
       const int t2 = (axis + 2) % 3;
-      along_row(row, s.n.x, [&](Index i, Index left, Index right) {
+      along_open_row(s, row, [=](Index i, Index left, Index right) {
         const Real eps_own = eps[row.cell + i];
         const Real eps_minus = eps[minus_row + (axis == 0 ? left : i)];
         const Real eps_plus = eps[plus_row + (axis == 0 ? right : i)];
@@ -333,62 +359,6 @@ Vec3 MomentumEquation::shear_force(const GasFields& fields, std::size_t b) const
   }
   result[piece.axis] += wall_stress_[b];
   return result + transposed_[b];
-}
-
-// result(entry, near sum) for every cell and component.
-template <class Result>
-void MomentumEquation::apply(const char* label, const Real* u, Result&& result) const {
-  const Stencil& s = geometry_.stencil;
-  const Index n = s.cells();
-  for_rows(label, s, [&](const Index r) {
-    const Row row = s.row(r);
-    for (int a = 0; a < 3; ++a) {
-      const Index shift = a * n;
-      const Real* x = u + shift;
-      const auto pick = [&](std::size_t d) {
-        return (static_cast<int>(d / 2) == a ? normal_[d] : near_[d]).data() + row.cell;
-      };
-      const Real *xm = pick(0), *xp = pick(1), *ym = pick(2), *yp = pick(3), *zm = pick(4), *zp = pick(5);
-      const Real *own = x + row.cell, *y_minus = x + row.y_minus, *y_plus = x + row.y_plus;
-      const Real *z_minus = x + row.z_minus, *z_plus = x + row.z_plus;
-      along_row(row, s.n.x, [&](Index i, Index left, Index right) {
-        result(row.cell + i + shift, (xm[i] * own[left] + xp[i] * own[right]) +
-                                         (ym[i] * y_minus[i] + yp[i] * y_plus[i]) +
-                                         (zm[i] * z_minus[i] + zp[i] * z_plus[i]));
-      });
-    }
-  });
-}
-
-void MomentumEquation::compute_influx(const GasFields& fields, const HostArray<Real>& influx) const {
-  Real* h = influx.data();
-  const Real* source = source_.data();
-  apply("cfd::momentum::influx", fields.velocity.data(),
-        [&](Index e, Real near) { h[e] = near + source[e]; });
-}
-
-TransportReport MomentumEquation::solve(const GasFields& fields, const HostArray<Real>& inertia,
-                                        const HostArray<Real>& force, Real tolerance) {
-  const Index n = geometry_.stencil.cells();
-  const Index size = 3 * n;
-  Real* inverse = inverse_.data();
-  Real* right_side = linear_solver_.right_side().data();
-  const Real* own = own_.data();
-  const Real* source = source_.data();
-  const Real* given = force.data();
-  const Real* mass = inertia.data();
-  for_entries("cfd::momentum::divide", n, [&](Index c) {
-    for (Index e = c; e < size; e += n) {
-      inverse[e] = 1 / (own[e] + mass[e]);
-      right_side[e] = (source[e] + given[e]) * inverse[e];
-    }
-  });
-  return linear_solver_.solve(
-      fields.velocity.data(),
-      [&](const Real* u, auto&& take) {
-        apply("cfd::momentum::near", u, [&](Index e, Real near) { take(e, near * inverse[e]); });
-      },
-      tolerance, options_.solver.max_linear_iterations);
 }
 
 }  // namespace pellicle::cfd

@@ -45,8 +45,20 @@ class MomentumEquation {
   void add_surfaces(const GasFields& fields);
   void add_skew_stress(const GasFields& fields);
   void add_boundaries(const GasFields& fields);
+  struct RowSum;
   template <class Result>
   void apply(const char* label, const Real* u, Result&& result) const;
+  struct Correction {
+    const float* values;
+    Real residual;
+    bool fast;  ///< sweeps converge fast enough
+  };
+  template <class T, class Term>
+  T sum_along_row(const Row& row, Term&& term) const;
+  Real compute_defect(const Real* u, Real factor);
+  void pack();
+  Real sweep(const float* d, float* next);
+  Correction solve_correction(Real defect, Real target, int& sweeps);
 
   const FlowGeometry& geometry_;
   const Boundaries& boundaries_;
@@ -61,7 +73,14 @@ class MomentumEquation {
   std::array<HostArray<Real>, 6> near_,
       normal_;  ///< x-, x+, y-, y+, z-, z+; for components across, along that axis
   HostArray<Real> own_, source_, inverse_;
+  // Of sweeps: row by row of cells, in it value by value or component by component.
+  HostArray<float> packed_, defect_;
+  std::array<HostArray<float>, 2> trial_;
+  std::vector<Real> row_change_;  ///< sum of squares
+  bool coloured_ = true;          ///< rows can be coloured like a chess board
+  bool open_ends_ = true;         ///< no coefficient at the ends of rows
   BiCGStab linear_solver_;
+  FixedSum sum_;
 };
 
 }  // namespace pellicle::cfd

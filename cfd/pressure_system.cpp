@@ -3,12 +3,14 @@
 #include <cmath>
 #include <string>
 
+#include "cfd/field_memory.hpp"
+
 namespace pellicle::cfd {
 
 namespace {
 
 HostArray<Real> make_array(const char* label, Index size) {
-  return HostArray<Real>(std::string(label), static_cast<std::size_t>(size));
+  return make_field<Real>(label, static_cast<std::size_t>(size));
 }
 
 // The empty domain: conductance of a face is area / distance.
@@ -81,7 +83,7 @@ void multiply(const PressureMatrix& matrix, const HostArray<Real>& x_array, cons
   const Real wz = s.n.z > 1 ? 1 : 0;
   for_rows("cfd::pressure_system::multiply", s, [&](const Index r) {
     const Row row = s.row(r);
-    along_row(row, s.n.x, [&](Index i, Index left, Index right) {
+    along_open_row(s, row, [=](Index i, Index left, Index right) {
       const Index c = row.cell + i;
       const Index fx = row.x_face + i;
       const Index fy = row.y_face + i;
@@ -139,7 +141,7 @@ LinearReport PressureLinearSolver::solve(const PressureMatrix& matrix, const Hos
   Real rho = 0;
   report.converged = false;
   while (report.iterations < max_iterations) {
-    preconditioner_->apply(r_, z_);
+    preconditioner_->apply(r_, z_, report.residual / static_cast<Real>(n));
     if (matrix.singular) remove_mean(matrix, z_);
     const Real rho_new = sum_("cfd::pressure_system::dot_rz", n, [&](Index c) { return r[c] * z[c]; });
     const Real beta = report.iterations == 0 ? 0 : rho_new / rho;

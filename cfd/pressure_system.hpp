@@ -34,7 +34,8 @@ class PressurePreconditioner {
   virtual ~PressurePreconditioner() = default;
   /// Called before every solve; may keep what it has if that still serves.
   virtual void update(const PressureMatrix& matrix) = 0;
-  virtual void apply(const HostArray<Real>& r, const HostArray<Real>& z) = 0;
+  /// `size`: mean of |r|.
+  virtual void apply(const HostArray<Real>& r, const HostArray<Real>& z, Real size) = 0;
   /// Told how many iterations the solve took.
   virtual void solved(int /*iterations*/) {}
   virtual void drop() {}

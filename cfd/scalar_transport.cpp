@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cfd/convection_schemes.hpp"
+#include "cfd/field_memory.hpp"
 #include "cfd/turbulence_laws.hpp"
 #include "core/error.hpp"
 
@@ -17,7 +18,7 @@ namespace pellicle::cfd {
 namespace {
 
 HostArray<Real> make_array(const std::string& label, Index size) {
-  return HostArray<Real>(label, static_cast<std::size_t>(size));
+  return make_field<Real>(label, static_cast<std::size_t>(size));
 }
 
 }  // namespace

@@ -90,7 +90,16 @@ void for_entries(const char* label, Index count, F&& f) {
   }
 }
 
-/// Calls op(i, left, right) along a row; left and right are the neighbours' i.
+/// Asks for the values that begin at `first`, as far as a row of cells goes. A loop over rows that goes through more than a
+/// handful of fields waits for memory unless it asks for the next row while it is at this one.
+template <class T>
+inline void prefetch_row(const T* first, Index count) {
+  constexpr Index line = 64 / static_cast<Index>(sizeof(T));
+  for (Index i = 0; i < count; i += line) __builtin_prefetch(first + i);
+}
+
+/// Calls op(i, left, right) along a row; left and right are the neighbours' i. No op may read what another one writes:
+/// they run side by side.
 template <class Op>
 inline void along_row(const Row& row, Index nx, Op&& op) {
   if (nx == 1) {
@@ -98,32 +107,56 @@ inline void along_row(const Row& row, Index nx, Op&& op) {
     return;
   }
   op(Index{0}, row.before_first, Index{1});
+#pragma GCC ivdep
   for (Index i = 1; i < nx - 1; ++i) op(i, i - 1, i + 1);
   op(nx - 1, nx - 2, row.after_last);
 }
 
+/// The same with left = i - 1 and right = i + 1 all along the row, in one loop that vectorises as a whole, where the row's
+/// ends have no neighbours: what is read there belongs to another row, and the op must give it no weight.
+template <class Op>
+inline void along_open_row(const Stencil& s, const Row& row, Op&& op) {
+  const Index nx = s.n.x;
+  if (s.periodic[0] || row.cell == 0 || row.cell + nx == s.cells()) {
+    along_row(row, nx, op);
+    return;
+  }
+#pragma GCC ivdep
+  for (Index i = 0; i < nx; ++i) op(i, i - 1, i + 1);
+}
+
 /// Calls f(face, minus cell, plus cell, position along the axis, place on the plane) for every face that has a cell
-/// on both sides; of a periodic axis' first and last face only the first.
-template <class F>
-void for_faces(const char* label, const Stencil& s, int axis, F&& f) {
+/// on both sides; of a periodic axis' first and last face only the first. No f may read what another one writes.
+/// Before each row of cells ask(face, cell) is called with the first ones of the next row, see prefetch_row.
+template <class F, class Ask>
+void for_faces(const char* label, const Stencil& s, int axis, F&& f, Ask&& ask) {
   const Index first = s.periodic[static_cast<std::size_t>(axis)] ? 0 : 1;
   for_rows(label, s, [&](const Index r) {
     const Row row = s.row(r);
+    ask((axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face)) + s.n.x, row.cell + s.n.x);
     if (axis == 0) {
       if (first == 0) f(row.x_face, row.cell + s.n.x - 1, row.cell, Index{0}, r);
+#pragma GCC ivdep
       for (Index i = 1; i < s.n.x; ++i) f(row.x_face + i, row.cell + i - 1, row.cell + i, i, r);
     } else if (axis == 1) {
       if (row.j < first) return;
+#pragma GCC ivdep
       for (Index i = 0; i < s.n.x; ++i) {
         f(row.y_face + i, row.y_minus + i, row.cell + i, row.j, i + s.n.x * row.k);
       }
     } else {
       if (row.k < first) return;
+#pragma GCC ivdep
       for (Index i = 0; i < s.n.x; ++i) {
         f(row.z_face + i, row.z_minus + i, row.cell + i, row.k, i + s.n.x * row.j);
       }
     }
   });
+}
+
+template <class F>
+void for_faces(const char* label, const Stencil& s, int axis, F&& f) {
+  for_faces(label, s, axis, f, [](Index, Index) {});
 }
 
 /// Gives the last face of a periodic axis the value of the first; nothing on other axes.

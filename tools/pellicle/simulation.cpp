@@ -173,8 +173,15 @@ void Simulation::report_numerics() const {
   }
   const GasConvergence& gas = summary_.gas;
   if (gas.steps > 0) {
-    core::log().info("largest Courant number of the gas: {:.3g}; {} of {} steps ended above outer_tolerance",
-                     gas.largest_courant_number, gas.steps_not_converged, gas.steps);
+    core::log().info(
+        "largest Courant number of the gas: {:.3g}; no step's last outer iteration changed its velocities by "
+        "more than {:.2g} of the largest",
+        gas.largest_courant_number, gas.largest_velocity_change);
+    // A tenth is what the first step of a jet into gas at rest has; steps that go on like that are too long.
+    if (constexpr Real large_change = 0.2; gas.largest_velocity_change > large_change) {
+      core::log().warn(
+          "that is much: take a smaller time.gas_step or a larger gas.solver.max_outer_iterations");
+    }
   }
   if (crowded_steps_ > 0) {
     core::log().warn("in {} gas steps a transfer cell stayed below coupling.minimum_void_fraction",

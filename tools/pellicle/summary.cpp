@@ -273,7 +273,6 @@ std::string report_text(const Summary& summary) {
     line("  iterations a step", fmt::format("{:.2f} outer, {:.1f} of the pressure, {:.1f} of the velocity",
                                             per_step(gas.outer_iterations), per_step(gas.pressure_iterations),
                                             per_step(gas.momentum_iterations)));
-    line("  above outer_tolerance", fmt::format("{} steps", gas.steps_not_converged));
     line("  last change of velocities", fmt::format("{:.3g} of the largest", gas.largest_velocity_change));
     line("  continuity", fmt::format("{:.3g} of the throughput, {:.3g} of a cell's gas in a step",
                                      gas.largest_continuity_residual, gas.largest_divergence));

@@ -1,0 +1,110 @@
+// Whether a step of the gas went well, and where not.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cfd/gas_solver_impl.hpp"
+#include "core/error.hpp"
+
+namespace pellicle::cfd {
+
+Real GasSolver::Impl::face_velocity_change() {
+  Real change = 0;
+  Real fastest = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Real *now = fields.superficial[a].data(), *old = before[a].data();
+    const auto count = static_cast<Index>(before[a].extent(0));
+    change = std::max(change, sum.largest("cfd::gas_solver::face_change", count,
+                                          [=](Index f) { return std::abs(now[f] - old[f]); }));
+    fastest = std::max(fastest, sum.largest("cfd::gas_solver::face_speed", count,
+                                            [=](Index f) { return std::abs(now[f]); }));
+  }
+  return fastest > 0 ? change / fastest : 0;
+}
+
+// A cell beside the face whose velocity the last outer iteration changed most.
+Index GasSolver::Impl::most_changed_cell() const {
+  Index worst = 0;
+  Real largest = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const Index step = geometry.stencil.face_step(axis);
+    for (Index r = 0; r < geometry.stencil.rows(); ++r) {
+      const Row row = geometry.stencil.row(r);
+      const Index first = axis == 0 ? row.x_face : (axis == 1 ? row.y_face : row.z_face);
+      for (Index i = 0; i < geometry.stencil.n.x; ++i) {
+        for (const Index f : {first + i, first + i + step}) {
+          const Real change = std::abs(fields.superficial[a](f) - before[a](f));
+          if (change <= largest) continue;
+          largest = change;
+          worst = row.cell + i;
+        }
+      }
+    }
+  }
+  return worst;
+}
+
+// Relative change of a cell's gas in the step that the fluxes do not account for.
+Real GasSolver::Impl::find_divergence(Real dt) {
+  compute_continuity_residual(dt);
+  const Real *volume = geometry.volume.data(), *residual = rhs.data();
+  return sum.largest("cfd::gas_solver::divergence", fields.cells,
+                     [=](Index c) { return volume[c] > 0 ? std::abs(residual[c]) * dt / volume[c] : 0; });
+}
+
+void GasSolver::Impl::fail(const std::string& what, Index cell) const {
+  const Index3 at = geometry.grid.coordinates(cell);
+  throw RunError(fmt::format("gas: {}, in cell ({}, {}, {}) at ({:.6g}, {:.6g}, {:.6g}) m, at t = {:.9g} s",
+                             what, at.x, at.y, at.z, geometry.grid.center(0, at.x),
+                             geometry.grid.center(1, at.y), geometry.grid.center(2, at.z), state.time));
+}
+
+// The cell that is not finite, else the one with the largest mass residual.
+Index GasSolver::Impl::worst_cell() const {
+  Index worst = 0;
+  for (Index c = 0; c < fields.cells; ++c) {
+    if (!std::isfinite(rhs(c) + fields.velocity(c))) return c;
+    if (std::abs(rhs(c)) > std::abs(rhs(worst))) worst = c;
+  }
+  return worst;
+}
+
+Real GasSolver::Impl::check_and_find_courant(Real dt) {
+  const Stencil& s = geometry.stencil;
+  const Index n = s.cells();
+  row_courant.resize(static_cast<std::size_t>(s.rows()));
+  const Real *u = fields.velocity.data(), *p = fields.pressure.data(), *per_width = inverse_width.data();
+  for_rows("cfd::gas_solver::courant", s, [&](const Index r) {
+    const Row row = s.row(r);
+    const Real per_y = 1 / geometry.axis[1].width[static_cast<std::size_t>(row.j)];
+    const Real per_z = 1 / geometry.axis[2].width[static_cast<std::size_t>(row.k)];
+    Real largest = 0;
+    Real numbers = 0;  // stays 0 as long as all are finite
+#pragma omp simd reduction(max : largest) reduction(+ : numbers)
+    for (Index i = 0; i < s.n.x; ++i) {
+      const Index c = row.cell + i;
+      const Real own =
+          std::abs(u[c]) * per_width[i] + std::abs(u[c + n]) * per_y + std::abs(u[c + 2 * n]) * per_z;
+      numbers += 0 * (own + p[c]);
+      largest = own > largest ? own : largest;
+    }
+    row_courant[static_cast<std::size_t>(r)] = numbers == 0 ? dt * largest : numbers;
+  });
+  Real courant = 0;
+  for (Index r = 0; r < s.rows(); ++r) {
+    const Real own = row_courant[static_cast<std::size_t>(r)];
+    if (!std::isfinite(own)) {
+      for (Index c = s.row(r).cell; c < n; ++c) {
+        if (!std::isfinite(u[c] + u[c + n] + u[c + 2 * n] + p[c])) {
+          fail("velocity or pressure is no longer finite", c);
+        }
+      }
+    }
+    courant = std::max(courant, own);
+  }
+  return courant;
+}
+
+}  // namespace pellicle::cfd

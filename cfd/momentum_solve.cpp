@@ -1,0 +1,280 @@
+// The linear system of the momentum equations. Where the time step dominates, a few sweeps over the rows of cells solve
+// it, for corrections in single precision to a residual in double precision: what a sweep costs is the memory that it
+// goes through. Elsewhere BiCGStab goes on from where the sweeps came to.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cfd/momentum.hpp"
+
+namespace pellicle::cfd {
+
+namespace {
+
+constexpr Real sweeps_affordable = 24;   // BiCGStab: four to six iterations, each as long as ten sweeps
+constexpr Real single_precision = 1e-6;  // of a correction
+constexpr Real rough = 1e-5;             // a tolerance that single precision surely meets
+constexpr Real sharper = 0.3;         // a correction is solved for by so much more closely than is asked for
+constexpr Real least_progress = 0.1;  // of a correction
+constexpr int packed_values = 15;     // a cell: near, normal, inverse
+
+}  // namespace
+
+// near u of one component in a row of cells: values of the own row, of the rows beside it, coefficients.
+struct MomentumEquation::RowSum {
+  RowSum(const MomentumEquation& equation, const Row& row, int component, const Real* u) {
+    const Index n = equation.geometry_.stencil.cells();
+    const Index shift = component * n;
+    for (std::size_t d = 0; d < 6; ++d) {
+      const auto& of = static_cast<int>(d / 2) == component ? equation.normal_ : equation.near_;
+      coefficient[d] = of[d].data() + row.cell;
+    }
+    own = u + shift + row.cell;
+    if (component == 0) ask_for_next(equation, row, u);
+    y_minus = u + shift + row.y_minus;
+    y_plus = u + shift + row.y_plus;
+    z_minus = u + shift + row.z_minus;
+    z_plus = u + shift + row.z_plus;
+  }
+  static void ask_for_next(const MomentumEquation& equation, const Row& row, const Real* u) {
+    const Stencil& s = equation.geometry_.stencil;
+    const Index next = row.cell + s.n.x;
+    for (std::size_t d = 0; d < 6; ++d) {
+      prefetch_row(equation.near_[d].data() + next, s.n.x);
+      prefetch_row(equation.normal_[d].data() + next, s.n.x);
+    }
+    for (int a = 0; a < 3; ++a) prefetch_row(u + next + a * s.cells() + s.face_step(2), s.n.x);
+  }
+  Real operator()(Index i, Index left, Index right) const {
+    return (coefficient[0][i] * own[left] + coefficient[1][i] * own[right]) +
+           (coefficient[2][i] * y_minus[i] + coefficient[3][i] * y_plus[i]) +
+           (coefficient[4][i] * z_minus[i] + coefficient[5][i] * z_plus[i]);
+  }
+  std::array<const Real*, 6> coefficient;
+  const Real *own, *y_minus, *y_plus, *z_minus, *z_plus;
+};
+
+// Sum of term(i, left, right) along a row.
+template <class T, class Term>
+T MomentumEquation::sum_along_row(const Row& row, Term&& term) const {
+  const Stencil& s = geometry_.stencil;
+  const Index nx = s.n.x;
+  T sum = 0;
+  if (open_ends_ && row.cell > 0 && row.cell + nx < s.cells()) {
+#pragma omp simd reduction(+ : sum)
+    for (Index i = 0; i < nx; ++i) sum += term(i, i - 1, i + 1);
+    return sum;
+  }
+  along_row(row, nx, [&](Index i, Index left, Index right) { sum += term(i, left, right); });
+  return sum;
+}
+
+// result(entry, near sum) for every cell and component.
+template <class Result>
+void MomentumEquation::apply(const char* label, const Real* u, Result&& result) const {
+  const Stencil& s = geometry_.stencil;
+  const Index n = s.cells();
+  for_rows(label, s, [&](const Index r) {
+    const Row row = s.row(r);
+    for (int a = 0; a < 3; ++a) {
+      const RowSum near(*this, row, a, u);
+      const Index first = row.cell + a * n;
+      const auto at = [=](Index i, Index left, Index right) { result(first + i, near(i, left, right)); };
+      open_ends_ ? along_open_row(s, row, at) : along_row(row, s.n.x, at);
+    }
+  });
+}
+
+void MomentumEquation::compute_influx(const GasFields& fields, const HostArray<Real>& influx) const {
+  Real* h = influx.data();
+  const Real* source = source_.data();
+  apply("cfd::momentum_solve::influx", fields.velocity.data(),
+        [=](Index e, Real near) { h[e] = near + source[e]; });
+}
+
+// Residual over the diagonal, times `factor` in single precision, row by row; returns its sum of squares.
+Real MomentumEquation::compute_defect(const Real* u, Real factor) {
+  const Stencil& s = geometry_.stencil;
+  const Index n = s.cells();
+  const Index nx = s.n.x;
+  const Real* inverse = inverse_.data();
+  const Real* right_side = linear_solver_.right_side().data();
+  for_rows("cfd::momentum_solve::defect", s, [&](const Index r) {
+    const Row row = s.row(r);
+    Real total = 0;
+    for (int a = 0; a < 3; ++a) {
+      prefetch_row(right_side + row.cell + nx + a * n, nx);
+      prefetch_row(inverse + row.cell + nx + a * n, nx);
+      const RowSum near(*this, row, a, u);
+      const Index first = row.cell + a * n;
+      const Real *b = right_side + first, *inv = inverse + first, *old = u + first;
+      float* out = defect_.data() + (3 * r + a) * nx;
+      const auto at = [=](Index i, Index left, Index right) {
+        const Real defect = b[i] + near(i, left, right) * inv[i] - old[i];
+        out[i] = static_cast<float>(defect * factor);
+        return defect * defect;
+      };
+      total += sum_along_row<Real>(row, at);
+    }
+    row_change_[static_cast<std::size_t>(r)] = total;
+  });
+  Real total = 0;
+  for (const Real change : row_change_) total += change;
+  return total;
+}
+
+// Coefficients in single precision, all of a row of cells together.
+void MomentumEquation::pack() {
+  const Stencil& s = geometry_.stencil;
+  const Index n = s.cells();
+  const Index nx = s.n.x;
+  for_rows("cfd::momentum_solve::pack", s, [&](const Index r) {
+    const Index cell = r * nx;
+    for (std::size_t d = 0; d < 6; ++d) {
+      prefetch_row(near_[d].data() + cell + nx, nx);
+      prefetch_row(normal_[d].data() + cell + nx, nx);
+    }
+    for (int a = 0; a < 3; ++a) prefetch_row(inverse_.data() + cell + nx + a * n, nx);
+    float* out = packed_.data() + packed_values * cell;
+    const auto put = [&](const Real* from) {
+      for (Index i = 0; i < nx; ++i) out[i] = static_cast<float>(from[i]);
+      out += nx;
+    };
+    for (std::size_t d = 0; d < 6; ++d) put(near_[d].data() + cell);
+    for (std::size_t d = 0; d < 6; ++d) put(normal_[d].data() + cell);
+    for (int a = 0; a < 3; ++a) put(inverse_.data() + cell + a * n);
+  });
+}
+
+// One sweep from a correction to the next: rows of one colour, as on a chess board of rows, then those of the other with
+// what the first have come to; along a row all cells at once. Returns the sum of squares of the changes.
+Real MomentumEquation::sweep(const float* d, float* next) {
+  const Stencil& s = geometry_.stencil;
+  const Index nx = s.n.x;
+  for (int colour = 0; colour < 2; ++colour) {
+    for_rows("cfd::momentum_solve::sweep", s, [&](const Index r) {
+      const Row row = s.row(r);
+      if (row.k % 2 != colour) return;
+      const float* coefficients = packed_.data() + packed_values * row.cell;
+      prefetch_row(coefficients + packed_values * nx, packed_values * nx);
+      prefetch_row(defect_.data() + 3 * (row.cell + nx), 3 * nx);
+      float total = 0;
+      for (int a = 0; a < 3; ++a) {
+        const auto coefficient = [&](int side) {
+          return coefficients + (side / 2 == a ? side + 6 : side) * nx;
+        };
+        const float *xm = coefficient(0), *xp = coefficient(1), *ym = coefficient(2);
+        const float *yp = coefficient(3), *zm = coefficient(4), *zp = coefficient(5);
+        const float* inv = coefficients + (12 + a) * nx;
+        const float* beside = colour == 1 && coloured_ ? next : d;
+        const auto values = [&](Index cell) { return (cell == row.cell ? d : beside) + 3 * cell + a * nx; };
+        const float *own = d + 3 * row.cell + a * nx, *y_minus = d + 3 * row.y_minus + a * nx;
+        const float* y_plus = d + 3 * row.y_plus + a * nx;
+        const float *z_minus = values(row.z_minus), *z_plus = values(row.z_plus);
+        const float* b = defect_.data() + 3 * row.cell + a * nx;
+        float* out = next + 3 * row.cell + a * nx;
+        const auto update = [=](Index i, Index left, Index right) {
+          const float near = (xm[i] * own[left] + xp[i] * own[right]) +
+                             (ym[i] * y_minus[i] + yp[i] * y_plus[i]) +
+                             (zm[i] * z_minus[i] + zp[i] * z_plus[i]);
+          out[i] = b[i] + near * inv[i];
+          const float change = out[i] - own[i];
+          return change * change;
+        };
+        total += sum_along_row<float>(row, update);
+      }
+      row_change_[static_cast<std::size_t>(r)] = static_cast<Real>(total);
+    });
+  }
+  Real total = 0;
+  for (const Real change : row_change_) total += change;
+  return total;
+}
+
+// The correction to the defect, until a sweep would leave `target`; its residual, of the size of what the next sweep would
+// change. Beyond `affordable` it is given up.
+MomentumEquation::Correction MomentumEquation::solve_correction(Real defect, Real target, int& sweeps) {
+  Correction result{defect_.data(), defect, true};
+  float* free[2] = {trial_[0].data(), trial_[1].data()};
+  Real before = defect;
+  for (int k = 0; result.residual > target; ++k) {
+    const Real change = std::sqrt(sweep(result.values, free[k % 2]));
+    result.values = free[k % 2];
+    ++sweeps;
+    // Each change is about the rate times the one before, and so is what is left.
+    const Real rate = change / before;
+    result.residual = change * std::min(rate, Real{1});
+    before = change;
+    if (result.residual <= target || result.residual <= single_precision * defect) break;
+    const Real left = std::log(result.residual / target) / -std::log(std::min(rate, Real{1}));
+    result.fast = left < sweeps_affordable - k;
+    if (!result.fast) break;
+  }
+  return result;
+}
+
+TransportReport MomentumEquation::solve(const GasFields& fields, const HostArray<Real>& inertia,
+                                        const HostArray<Real>& force, Real tolerance) {
+  const Stencil& s = geometry_.stencil;
+  const Index n = s.cells();
+  const Index size = 3 * n;
+  Real* inverse = inverse_.data();
+  Real* right_side = linear_solver_.right_side().data();
+  const Real* own = own_.data();
+  const Real* source = source_.data();
+  const Real* given = force.data();
+  const Real* mass = inertia.data();
+  for_entries("cfd::momentum_solve::divide", size, [=](Index e) {
+    inverse[e] = 1 / (own[e] + mass[e]);
+    right_side[e] = (source[e] + given[e]) * inverse[e];
+  });
+  Real* u = fields.velocity.data();
+  const auto norm_of = [&](const char* label, const Real* y) {
+    return std::sqrt(sum_(label, size, [y](Index e) { return y[e] * y[e]; }));
+  };
+  const Real scale =
+      std::max(norm_of("cfd::momentum_solve::norm_b", right_side), norm_of("cfd::momentum_solve::norm_u", u));
+  const Real target = tolerance * scale;
+  TransportReport report;
+  if (scale == 0) return report;
+  // A power of two brings corrections to where single precision has them.
+  const Real factor = std::ldexp(1.0, -std::ilogb(scale / std::sqrt(static_cast<Real>(size))));
+  const Real back = 1 / factor;
+  Real before = std::numeric_limits<Real>::infinity();
+  while (true) {
+    const Real defect = std::sqrt(compute_defect(u, factor));
+    report.residual = defect / scale;
+    report.converged = defect <= target;
+    if (report.converged || report.iterations >= options_.solver.max_linear_iterations) return report;
+    if (!(defect < least_progress * before)) break;
+    if (report.iterations == 0) pack();
+    before = defect;
+    const Correction found = solve_correction(defect * factor, sharper * target * factor, report.iterations);
+    const float* d = found.values;
+    for_rows("cfd::momentum_solve::add", s, [&](const Index r) {
+      for (int a = 0; a < 3; ++a) {
+        Real* out = u + r * s.n.x + a * n;
+        const float* change = d + (3 * r + a) * s.n.x;
+        for (Index i = 0; i < s.n.x; ++i) out[i] += back * static_cast<Real>(change[i]);
+      }
+    });
+    if (!found.fast) break;
+    // Where little is asked for, single precision cannot have spoilt it.
+    if (tolerance >= rough) {
+      report.residual = found.residual * back / scale;
+      report.converged = found.residual <= target * factor;
+      return report;
+    }
+  }
+  const int done = report.iterations;
+  report = linear_solver_.solve(
+      u,
+      [&](const Real* v, auto&& take) {
+        apply("cfd::momentum_solve::near", v, [=](Index e, Real near) { take(e, near * inverse[e]); });
+      },
+      tolerance, options_.solver.max_linear_iterations);
+  report.iterations += done;
+  return report;
+}
+
+}  // namespace pellicle::cfd
