@@ -14,6 +14,21 @@ KOKKOS_INLINE_FUNCTION Index bin_of(Real time, Real longest, Index bins) {
   return time < longest ? Kokkos::min(bin, bins - 1) : bins;
 }
 
+struct FindRadii {
+  DeviceArray<dem::PositionRadius> place;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p, Kokkos::MinMaxScalar<Real>& all) const {
+    all.min_val = Kokkos::min(all.min_val, place(p).radius);
+    all.max_val = Kokkos::max(all.max_val, place(p).radius);
+  }
+};
+
+Kokkos::MinMaxScalar<Real> radii_of(const dem::Particles& particles) {
+  Kokkos::MinMaxScalar<Real> found;
+  Kokkos::parallel_reduce("spray::zone_visits::find_radii", DeviceRange(0, particles.count),
+                          FindRadii{particles.position_radius}, Kokkos::MinMax<Real>(found));
+  return found;
+}
+
 /// At the start: who is inside has not entered.
 struct MarkInside {
   ZoneShape shape;
@@ -160,15 +175,7 @@ ZoneVisits::ZoneVisits(const ZoneOptions& options, const dem::Particles& particl
       residence_counts_("spray::zone_visits::residence_counts", static_cast<std::size_t>(options.bins) + 1) {}
 
 void ZoneVisits::find_radii() {
-  const auto place = particles_.position_radius;
-  Kokkos::MinMaxScalar<Real> found;
-  Kokkos::parallel_reduce(
-      "spray::zone_visits::find_radii", DeviceRange(0, particles_.count),
-      KOKKOS_LAMBDA(const Index p, Kokkos::MinMaxScalar<Real>& all) {
-        all.min_val = Kokkos::min(all.min_val, place(p).radius);
-        all.max_val = Kokkos::max(all.max_val, place(p).radius);
-      },
-      Kokkos::MinMax<Real>(found));
+  const Kokkos::MinMaxScalar<Real> found = radii_of(particles_);
   smallest_radius_ = found.min_val;
   largest_radius_ = found.max_val;
 }
