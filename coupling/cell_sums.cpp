@@ -61,19 +61,14 @@ KOKKOS_INLINE_FUNCTION void sort_keys(const DeviceArray<std::uint64_t>& sorted, 
 }
 
 struct SortAndSum {
-  DeviceArray<Index> begin;
-  DeviceArray<std::uint64_t> sorted;
+  CellRows rows;
   DeviceArray<CellLoad> load, result;
-  Real share;
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index c) const {
-    const Index first = begin(c), last = begin(c + 1);
-    sort_keys(sorted, first, last);
+    const Index first = rows.begin(c), last = rows.begin(c + 1);
+    sort_keys(rows.keys, first, last);
     CellLoad sum;
-    for (Index e = first; e < last; ++e) {
-      const std::uint64_t key = sorted(e);
-      sum += (share * static_cast<Real>(key & 0xffffffffu)) * load(static_cast<Index>(key >> 32));
-    }
+    for (Index e = first; e < last; ++e) sum += rows.share_of(e) * load(rows.particle(e));
     result(c) = sum;
   }
 };
@@ -114,7 +109,7 @@ void CellSums::compute(const Footprint& footprint, const DeviceArray<CellLoad>& 
                        const DeviceArray<CellLoad>& result) {
   distribute(footprint);
   Kokkos::parallel_for("coupling::cell_sums::sort_and_sum", DeviceRange(0, cells_),
-                       SortAndSum{begin_, sorted_, load, result, share_});
+                       SortAndSum{rows(), load, result});
 }
 
 void CellSums::sort(const Footprint& footprint) {

@@ -40,23 +40,6 @@ struct CellRows {
   }
 };
 
-/// Sum over the entries of a cell, in their order: particle in the upper half of a key, pieces in the lower one.
-template <class Load>
-struct SumOverCell {
-  DeviceArray<Index> begin;
-  DeviceArray<std::uint64_t> sorted;
-  DeviceArray<Load> load, result;
-  Real share;
-  KOKKOS_INLINE_FUNCTION void operator()(const Index c) const {
-    Load sum{};
-    for (Index e = begin(c); e < begin(c + 1); ++e) {
-      const std::uint64_t key = sorted(e);
-      sum += (share * static_cast<Real>(key & 0xffffffffU)) * load(static_cast<Index>(key >> 32));
-    }
-    result(c) = sum;
-  }
-};
-
 /// Sums loads over cells: entries of the footprint are sorted by cell with a counting sort, within a cell by particle,
 /// and summed in that order.
 class CellSums {
@@ -67,18 +50,10 @@ class CellSums {
   void compute(const Footprint& footprint, const DeviceArray<CellLoad>& load,
                const DeviceArray<CellLoad>& result);
 
-  /// Only the order, for `sum` and `rows`.
+  /// Only the order, for `rows`.
   void sort(const Footprint& footprint);
   /// Which particles lie in each cell, and with how many of their pieces, as of the last `compute` or `sort`.
   CellRows rows() const { return {begin_, sorted_, share_}; }
-
-  /// The same for another load over the footprint of the last `compute`, whose order is used again. Load needs a
-  /// default of zero, += and Real x Load.
-  template <class Load>
-  void sum(const DeviceArray<Load>& load, const DeviceArray<Load>& result) const {
-    Kokkos::parallel_for("coupling::cell_sums::sum", DeviceRange(0, cells_),
-                         SumOverCell<Load>{begin_, sorted_, load, result, share_});
-  }
 
  private:
   void distribute(const Footprint& footprint);

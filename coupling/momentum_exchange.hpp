@@ -75,9 +75,7 @@ class MomentumExchange {
   const BoundReport& bound_report() const { return bound_report_; }
   /// Per particle, in the particles' present order: the gas sampled at the last compute_coefficients.
   const DeviceArray<SampledGas>& sampled_gas() const { return sampled_; }
-  /// Which transfer cells each particle covers, as of the last deposit; where other folders sum over the same
-  /// cells, the order that the sums were done in.
-  const Footprint& transfer_footprint() const { return transfer_footprint_; }
+  /// Which particles lie in each transfer cell, as of the last deposit.
   const CellSums& cell_sums() const { return sums_; }
   /// Which gas cells each particle covers, as of the last deposit; one with the transfer footprint if both grids have
   /// the same cells.
@@ -91,11 +89,6 @@ class MomentumExchange {
   }
   /// What walls leave of the gas grid's cells; empty if they do not cut it.
   const CutGrid& cut_grid() const { return cut_; }
-  /// Volume of the transfer cells that is open to the gas [m3].
-  const HostArray<Real>& open_volume() const { return volume_; }
-  /// From means over transfer cells to means over gas cells, and back; integrals are kept.
-  const GridMapping& to_gas() const { return to_gas_; }
-  const GridMapping& to_transfer() const { return to_transfer_; }
   const CartesianGrid& transfer_grid() const { return transfer_; }
   /// Void fraction of the transfer grid's cells.
   const HostArray<Real>& transfer_void_fraction() const { return void_fraction_host_; }

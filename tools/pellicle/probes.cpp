@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "tools/pellicle/case_keys.hpp"
 #include "tools/pellicle/model_families.hpp"
 #include "tools/pellicle/output_fields.hpp"
 #include "tools/pellicle/particle_quantities.hpp"
@@ -26,16 +27,6 @@ std::vector<int> find_all(core::ModelList known, const ProbeSpec& spec) {
     }
   }
   return found;
-}
-
-core::ModelList known_quantities(const ProbeSpec& spec) {
-  if (spec.bed) return bed_quantities;
-  if (spec.coating) return coating_quantities;
-  if (spec.particle) return particle_quantities;
-  if (spec.wall) return wall_quantities;
-  if (spec.side) return side_quantities;
-  if (spec.plane) return plane_probe_quantities;
-  return gas_quantities;
 }
 
 std::vector<std::string> probe_header(const ProbeSpec& spec) {
@@ -100,7 +91,7 @@ Probes::Probes(const std::vector<ProbeSpec>& specs, core::TimeControl& time, con
                const Box& domain, const CartesianGrid* gas_grid, std::optional<Real> resume_time)
     : floor_(domain.min.z) {
   for (const auto& spec : specs) {
-    auto quantities = find_all(known_quantities(spec), spec);
+    auto quantities = find_all(quantities_of(spec), spec);
     const Index cell = cell_of(spec, gas_grid);
     // Without `every`: after each outer step.
     const core::Schedule schedule = spec.every > 0

@@ -98,9 +98,9 @@ class Simulation {
 
   std::optional<heat::SurfaceState> surface_;  // follows the particles, and outlives them
   std::optional<spray::Spray> spray_;          // its hit records likewise
+  Zones zones_;                                // likewise
   std::optional<dem::Engine> particles_;
   std::vector<dem::Feed> feeds_;
-  Zones zones_;
   std::optional<cfd::GasSolver> gas_;
   std::optional<coupling::MomentumExchange> exchange_;
   std::optional<heat::HeatExchange> heat_;
