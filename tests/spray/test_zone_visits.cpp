@@ -4,7 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "core/checkpoint.hpp"
 #include "spray/zone_visits.hpp"
+#include "tests/core/temporary_folder.hpp"
 
 namespace pellicle::spray {
 namespace {
@@ -95,6 +97,55 @@ TEST(ZoneVisits, CyclesByHand) {
   EXPECT_EQ(counts.cycle_time, (std::vector<std::int64_t>{0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0}));
   EXPECT_EQ(counts.residence, (std::vector<std::int64_t>{0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(counts.open_cycle, (std::vector<std::int64_t>{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0}));  // 13-12, 13-9
+}
+
+TEST(ZoneVisits, WhoNeverEnteredHasNoOpenCycle) {
+  Paths paths(3);
+  ZoneVisits zone(unit_box(), paths.particles);
+  zone.reset(3);
+  paths.put(0, in, 1e-3, 0);  // inside from the start
+  zone.update(0, paths.film);
+  paths.put(2, in, 1e-3, 0);
+  zone.update(1, paths.film);
+  const ZoneHistograms counts = zone.compute_histograms(3.5);
+  EXPECT_EQ(counts.open_cycle, (std::vector<std::int64_t>{0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0}));
+}
+
+// The rest of a path gives the same figures whether a checkpoint lies in between or not.
+TEST(ZoneVisits, GoesThroughACheckpoint) {
+  const tests::TemporaryFolder folder;
+  Paths paths(2);
+  ZoneVisits zone(unit_box(), paths.particles), resumed(unit_box(), paths.particles);
+  zone.reset(2);
+  zone.update(0, paths.film);
+  const auto step = [&](ZoneVisits& which, Real time, const Vec3& at, Real solids) {
+    paths.put(0, at, 1e-3, solids);
+    which.update(time, paths.film);
+  };
+  step(zone, 1, in, 0.5);
+  step(zone, 2, out, 1);
+  step(zone, 4, in, 1);
+  step(zone, 4.5, out, 1.5);
+  {
+    core::CheckpointWriter file(folder / "checkpoint.h5");
+    zone.save(file, 2);
+    file.close();
+  }
+  resumed.load(core::CheckpointReader(folder / "checkpoint.h5"), 2);
+  step(zone, 9, in, 2);
+  step(resumed, 8, out, 1.5);  // no news
+  step(resumed, 9, in, 2);
+  const ZoneSums a = total(zone.compute_sums(10, paths.film)),
+                 b = total(resumed.compute_sums(10, paths.film));
+  EXPECT_EQ(b.entries, 3);
+  EXPECT_EQ(b.cycle_time, 8);  // 3 + 5
+  EXPECT_EQ(b.cycle_time_squared, 34);
+  EXPECT_EQ(b.gain, 1.5);  // 0.5 + 1
+  EXPECT_EQ(b.residence, a.residence);
+  EXPECT_EQ(b.time_gain, a.time_gain);
+  EXPECT_EQ(resumed.compute_histograms(10).cycle_time, zone.compute_histograms(10).cycle_time);
+  EXPECT_EQ(resumed.compute_histograms(10).residence, zone.compute_histograms(10).residence);
+  EXPECT_EQ(resumed.radii(), zone.radii());
 }
 
 TEST(ZoneVisits, ShortAbsenceIsNone) {
