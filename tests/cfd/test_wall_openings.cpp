@@ -47,6 +47,8 @@ TEST(WallOpenings, PlugFlowBetweenTwoPlanes) {
     EXPECT_NEAR(gas.state().velocity(c).y, 0, 1e-6);
     EXPECT_NEAR(gas.state().pressure(c), 3, 1e-4);
   }
+  EXPECT_NEAR(gas.patch_pressure("in"), 3, 1e-4);
+  EXPECT_NEAR(gas.pressure_drop("in", "out"), 0, 1e-4);
   const Real moved = 2.0 * 0.2 * 0.1 * 1.2 * 0.02 * 100;
   EXPECT_NEAR(gas.balance().patches[4].mass_in, moved, 1e-12 * moved);
   EXPECT_NEAR(gas.balance().patches[5].mass_out, moved, 1e-10 * moved);
