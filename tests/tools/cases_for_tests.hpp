@@ -65,7 +65,6 @@ output:
     - {name: centre, point: ["20 mm", "5 mm", "30 mm"], quantities: [pressure, void_fraction], every: "2 ms"}
     - {name: bead, particle: 7}
     - {name: whole, bed: {}}
-    - {name: coated, coating: {}}
     - {name: out, side: top, quantities: [left_mass, outflow_rate]}
     - {name: throat, plane: {axis: z, at: "40 mm", box: {min: ["10 mm", 0, 0], max: ["30 mm", "10 mm", 0]}, mean: flow}}
     - {name: round, plane: {axis: x, at: "20 mm", disc: {centre: [0, "5 mm", "50 mm"], radius: "4 mm"}},
@@ -288,6 +287,7 @@ spray:
      droplet_diameter: {table: {diameters: ["10 um", "20 um"], shares: [3, 1], by: mass}}}
   - {name: seventh, position: [0, 0, "90 mm"], speed: 1, mass_rate: 1,
      droplet_diameter: {table: {diameters: ["10 um", "20 um"], finer: [0, 1]}}}
+output: {probes: [{name: coated, coating: {}, quantities: [coating_mass_cov]}]}
 )";
 
 /// Two particles and nothing else.

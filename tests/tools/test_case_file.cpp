@@ -531,6 +531,21 @@ TEST(CaseErrors, Outputs) {
       pair_errors("output.lines=[{name: l, from: [0, 0, 0], to: [1, 0, 0], points: 3, quantity: pressure}]")
           .substr(0, 75),
       "--set: output.lines.l.quantity: pressure needs gas, which the case has not;");
+  EXPECT_EQ(
+      bed_errors("output.histograms.speeds.quantity=coating_thickness"),
+      "--set: output.histograms.speeds.quantity: coating_thickness needs heat or spray, which the case has "
+      "not; another name");
+  EXPECT_EQ(
+      bed_errors("output.histograms.rising.against=hits"),
+      "--set: output.histograms.rising.against: hits needs spray, which the case has not; another name");
+  EXPECT_EQ(
+      bed_errors("output.snapshots.particles=[temperature]"),
+      "--set: output.snapshots.particles: particle_temperature needs heat, which the case has not; another "
+      "name");
+  EXPECT_EQ(bed_errors("output.probes.bead.quantities=[film_liquid]"),
+            "--set: output.probes.bead.quantities: film_liquid needs heat or spray, which the case has not; "
+            "another "
+            "name");
   EXPECT_EQ(errors(channel_case, {"output.probes=[{name: b, bed: {}}]"}),
             "--set: output.probes.b.bed: the case has no particles; point or plane");
   EXPECT_EQ(errors(channel_case, {"output.histograms=[{name: h, quantity: particle_speed}]"}),

@@ -53,9 +53,15 @@ class Checker {
     for (const auto& field : spec_.output.snapshots.gas) {
       if (spec_.gas) check_carried(": output.snapshots", "gas", field);
     }
+    for (const auto& field : spec_.output.snapshots.particles) {
+      check_followed(": output.snapshots", "particles",
+                     field == "temperature" ? std::string_view("particle_temperature") : field);
+    }
     for (const auto& histogram : spec_.output.histograms) {
       if (spec_.particles.empty())
         wrong(histogram.where, "quantity", "a case without particles has none; no histograms");
+      check_followed(histogram.where, "quantity", histogram.quantity);
+      if (histogram.against) check_followed(histogram.where, "against", *histogram.against);
     }
     for (const auto& zone : spec_.output.zones) {
       if (spec_.particles.empty())
@@ -432,19 +438,24 @@ class Checker {
             fmt::format("{} needs gas, which the case has not; {}", name,
                         core::allowed_names(particle_quantities)));
     if (of_gas && spec_.gas) check_carried(where, key, name);
-    if (!of_gas && !spec_.follows(name)) {
-      wrong(where, key,
-            fmt::format(
-                "{} needs {}, which the case has not; another name", name,
-                name == "particle_temperature"
-                    ? "heat"
-                    : (name.ends_with("hits") || name.ends_with("hit_time") ? "spray" : "heat or spray")));
-    }
+    if (!of_gas) check_followed(where, key, name);
     if (!of_gas && spec_.particles.empty()) {
       wrong(where, key,
             fmt::format("{} needs particles, which the case has not; {}", name,
                         core::allowed_names(gas_quantities)));
     }
+  }
+
+  /// Temperature, film and hits of particles are there only with heat or spray.
+  void check_followed(const std::string& where, std::string_view key, std::string_view name) {
+    if (spec_.follows(name)) return;
+    const bool of_heat = name.starts_with("particle_temperature");
+    const bool of_spray = name == "hits" || name.ends_with("hit_time");
+    wrong(where, key,
+          fmt::format("{} needs {}, which the case has not; another name", name,
+                      of_heat    ? "heat"
+                      : of_spray ? "spray"
+                                 : "heat or spray"));
   }
 
   /// Temperature and moisture are there only if the gas has them.
@@ -513,6 +524,9 @@ class Checker {
   }
 
   void check_probe(const ProbeSpec& probe) {
+    if (probe.particle) {
+      for (const auto& name : probe.quantities) check_followed(probe.where, "quantities", name);
+    }
     if (probe.point) {
       if (!spec_.gas)
         wrong(probe.where, "point", "a point shows the gas, which the case has not; particle or bed");
@@ -534,6 +548,8 @@ class Checker {
             : probe.coating ? "coating"
                             : (probe.wall ? "wall" : (probe.side ? "side" : "particle")),
             "the case has no particles; point or plane");
+    } else if (probe.coating && !spec_.follows("film_solids")) {
+      wrong(probe.where, "coating", "nothing coats particles in this case; heat or spray, or bed");
     } else if (probe.side && !open(static_cast<cfd::Side>(*probe.side))) {
       wrong(probe.where, "side",
             fmt::format("nothing can leave through {}; a side that is named in open of the box of walls",

@@ -149,7 +149,7 @@ void describe_histogram(Keys& keys, HistogramSpec& histogram) {
     keys.problem("against_max", "it is not above against_min; a larger number");
   }
   for (const char* key : {"against_min", "against_max"}) {
-    if (keys.given(key) && !histogram.against)
+    if (keys.given(key) && !histogram.against && !keys.given("against"))
       keys.problem(key, "there is no second quantity; against as well");
   }
 }
