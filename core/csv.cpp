@@ -29,6 +29,8 @@ std::string header_line(const std::vector<std::string>& header) {
 void append_number(std::string& text, double value, int digits) {
   if (std::isfinite(value) && value == std::trunc(value) && std::abs(value) < 1e15) {
     fmt::format_to(std::back_inserter(text), "{:.0f}", value);
+  } else if (std::isnan(value)) {
+    text += "nan";  // a NaN's sign means nothing
   } else {
     fmt::format_to(std::back_inserter(text), "{:.{}g}", value, digits);
   }

@@ -17,7 +17,7 @@ using pellicle::tests::TemporaryFolder;
 
 TEST(Csv, TableThereAndBack) {
   TemporaryFolder folder;
-  write_csv(folder / "t.csv", {{"x [m]", "value [m/s]"}, {{0.1, 0.2}, {-1.5, std::nan("")}}});
+  write_csv(folder / "t.csv", {{"x [m]", "value [m/s]"}, {{0.1, 0.2}, {-1.5, -std::nan("")}}});
   EXPECT_EQ(read_file(folder / "t.csv"), "x [m],value [m/s]\n0.1,-1.5\n0.2,nan\n");
   const CsvTable table = read_csv(folder / "t.csv");
   EXPECT_EQ(table.column("x"), (std::vector<double>{0.1, 0.2}));

@@ -2,11 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/csv.hpp"
+#include "core/hdf5_file.hpp"
 #include "tests/core/temporary_folder.hpp"
 #include "tests/tools/particles_for_tests.hpp"
 #include "tools/pellicle/coating_figures.hpp"
+#include "tools/pellicle/histogram_file.hpp"
 #include "tools/pellicle/probes.hpp"
 #include "tools/pellicle/zone_outputs.hpp"
 
@@ -90,6 +95,25 @@ TEST(Histograms, JointDistribution) {
   EXPECT_NEAR(table.columns[6][1], 0.25 / 1e-3, 1e-9);
   EXPECT_NEAR(table.columns[3][1], 2e-3, 1e-12);
   EXPECT_NEAR(table.columns[1][5], 1, 1e-12);
+}
+
+TEST(Histograms, OneHdf5FileHoldsThemAll) {
+  const tests::TemporaryFolder folder;
+  const ResultsFolder results(folder / "r", ResultsFolder::Existing::refuse);
+  write_histogram_file(results.path());
+  EXPECT_FALSE(std::filesystem::exists(results.path() / "histograms.h5")) << "of nothing";
+  core::write_csv(results.csv("histograms", "speed"),
+                  {{"time [s]", "from [m/s]", "count [-]"},
+                   {{0, 0, 0, 0.5, 0.5, 0.5}, {0, 1, 2, 0, 1, 2}, {7, 8, 9, 10, 11, 12}}});
+  core::write_csv(results.csv("histograms", "empty"), {{"time [s]", "count [-]"}, {{}, {}}});
+  for (int again = 0; again < 2; ++again) write_histogram_file(results.path());
+  const core::Hdf5File file(results.path() / "histograms.h5", core::Hdf5File::Mode::read);
+  EXPECT_EQ(file.members("/"), (std::vector<std::string>{"empty", "speed"}));
+  EXPECT_EQ(file.read<double>("speed/time"), (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(file.shape("speed/count"), (std::vector<std::size_t>{2, 3}));
+  EXPECT_EQ(file.read<double>("speed/count"), (std::vector<double>{7, 8, 9, 10, 11, 12}));
+  EXPECT_TRUE(file.has_attribute("speed/from", "unit"));
+  EXPECT_EQ(file.shape("empty/time"), (std::vector<std::size_t>{0}));
 }
 
 }  // namespace

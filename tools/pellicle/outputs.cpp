@@ -1,5 +1,7 @@
 #include "tools/pellicle/outputs.hpp"
 
+#include "tools/pellicle/histogram_file.hpp"
+
 namespace pellicle::tools {
 
 namespace {
@@ -44,6 +46,7 @@ void Outputs::flush() {
   probes_.flush();
   histograms_.flush();
   zones_.flush();
+  write_histogram_file(folder_.path());
 }
 
 }  // namespace pellicle::tools
