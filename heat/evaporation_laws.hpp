@@ -113,16 +113,19 @@ KOKKOS_INLINE_FUNCTION ParticleResponse wet_response(const ParticleHeat& p, cons
 
 /// Slope of w* for wet_response: of the chord from the start to the particle's end of the step in gas of this warmth and
 /// vapour. With the tangent a cold particle would meet its wet-bulb temperature at too little evaporation, and a step
-/// far longer than its time constant would carry it past the gas. `saturation(temperature)` gives w* and its slope.
+/// far longer than its time constant would carry it past the gas. `saturation(temperature)` gives w* and its slope, `start`
+/// is that at the particle's start.
 template <class Saturation>
-KOKKOS_INLINE_FUNCTION ValueAndSlope find_chord(const Saturation& saturation, const ParticleHeat& p,
-                                                const Conductances& k, const WaterEnthalpy& water,
-                                                Real gas_warmth, Real gas_vapour, Real step) {
+KOKKOS_INLINE_FUNCTION ValueAndSlope find_chord(const Saturation& saturation, const ValueAndSlope& start,
+                                                const ParticleHeat& p, const Conductances& k,
+                                                const WaterEnthalpy& water, Real gas_warmth, Real gas_vapour,
+                                                Real step) {
   constexpr Real close = 1e-2;  // [K]: the slope of w* changes by 6 % a kelvin
   constexpr int most_rounds = 8;
-  const ValueAndSlope start = saturation(water.reference + p.warmth);
   const Real latent = water.evaporation(water.reference + p.warmth);
   const Real pull = k.heat * (gas_warmth - p.warmth) - latent * k.vapour * (start.value - gas_vapour);  // [W]
+  // It does not get further than it would at this pace; most are here in a short step.
+  if (Kokkos::fabs(pull) * step < close * p.capacity) return start;
   ValueAndSlope end = start;
   Real slope = start.slope, change = 0;
   for (int round = 0; round < most_rounds; ++round) {

@@ -72,12 +72,16 @@ struct Surroundings {
     const coupling::SampledGas flow = sampled(p);
     const Real slip = norm(flow.velocity - view.particles.velocity_spin(p).velocity());
     const Real capacity = properties.capacity * (1 - g.vapour) + view.water.vapour_capacity * g.vapour;
-    TransferFlow around{flow.void_fraction, g.density * flow.void_fraction * slip * diameter / viscosity,
-                        viscosity * capacity / properties.conductivity};
-    Conductances k{transfer_number(nusselt, around) * properties.conductivity * pi * diameter, 0};
+    const auto reynolds = static_cast<float>(g.density * flow.void_fraction * slip * diameter / viscosity);
+    const TransferLine line = transfer_line(nusselt, flow.void_fraction, reynolds);
+    const Real prandtl = viscosity * capacity / properties.conductivity;
+    const Real length = pi * diameter;  // A / d
+    Conductances k{(line.still + line.stirred * cube_root(prandtl)) * properties.conductivity * length, 0};
     if (!evaporation) return k;
-    around.prandtl = viscosity / (g.density * properties.diffusivity);
-    k.vapour = transfer_number(sherwood, around) * g.density * properties.diffusivity * pi * diameter;
+    const TransferLine vapour =
+        sherwood == nusselt ? line : transfer_line(sherwood, flow.void_fraction, reynolds);
+    const Real diffusion = g.density * properties.diffusivity;
+    k.vapour = (vapour.still + vapour.stirred * cube_root(viscosity / diffusion)) * diffusion * length;
     if (stefan_flow) k.vapour *= stefan_factor(surface, g.vapour);
     return k;
   }
@@ -85,8 +89,8 @@ struct Surroundings {
   /// own along.
   KOKKOS_INLINE_FUNCTION ParticleHeat losing(Index p, Real evaporation_rate) const {
     ParticleHeat held = view.heat(p);
-    const Real lost = Kokkos::fmin(step * evaporation_rate, view.film(p).liquid);
-    held.capacity -= view.capacities.liquid * Kokkos::fmax(lost, Real(0));
+    const Real lost = Kokkos::min(step * evaporation_rate, view.film(p).liquid);
+    held.capacity -= view.capacities.liquid * Kokkos::max(lost, Real(0));
     return held;
   }
 };
@@ -99,15 +103,16 @@ struct Respond {
     const CellGas g = around.footprint.sample(p, around.gas);
     const WaterEnthalpy& water = around.view.water;
     const Real temperature = around.view.temperature(p);
-    const Real surface = around.evaporation ? around.saturation(temperature).value : 0;
-    const Conductances k = around.conductances(p, g, surface);
-    if (!around.evaporation || (!(around.view.film(p).liquid > 0) && g.vapour <= surface)) {
+    const ValueAndSlope surface = around.evaporation ? around.saturation(temperature) : ValueAndSlope{0, 0};
+    const Conductances k = around.conductances(p, g, surface.value);
+    if (!around.evaporation || (!(around.view.film(p).liquid > 0) && g.vapour <= surface.value)) {
       // Dry, and nothing condenses.
       response(p) = limited_response(around.view.heat(p), k.heat, 0, 0, around.step);
       return;
     }
-    const ParticleHeat held = around.losing(p, k.vapour * (surface - g.vapour));
-    const ValueAndSlope line = find_chord(around.saturation, held, k, water, g.warmth, g.vapour, around.step);
+    const ParticleHeat held = around.losing(p, k.vapour * (surface.value - g.vapour));
+    const ValueAndSlope line =
+        find_chord(around.saturation, surface, held, k, water, g.warmth, g.vapour, around.step);
     response(p) = wet_response(held, k, line, water.evaporation(temperature), around.step);
   }
 };
@@ -246,7 +251,7 @@ struct FinishParticles {
                           evaporated * view.water.vapour(view.water.reference + held.warmth);
     Film film = view.film(p);
     // All of it if all was to evaporate, without what rounding would leave.
-    film.liquid = r.is_given() && evaporated > 0 ? Real(0) : Kokkos::fmax(film.liquid - evaporated, Real(0));
+    film.liquid = r.is_given() && evaporated > 0 ? Real(0) : Kokkos::max(film.liquid - evaporated, Real(0));
     view.film(p) = film;
     const Real temperature = view.water.reference + enthalpy / view.heat(p).capacity;
     view.temperature(p) = temperature;

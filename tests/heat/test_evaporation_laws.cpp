@@ -92,7 +92,8 @@ TEST(ParticleResponse, NeverOvershootsTheEquilibrium) {
     const Real gas_warmth = -25 + 95 * unit(generator);
     const Real vapour = 0.3 * unit(generator) * unit(generator);
     const Real step = std::pow(10, -4 + 9 * unit(generator));
-    const ValueAndSlope line = find_chord(buck, p, conductances, water, gas_warmth, vapour, step);
+    const ValueAndSlope line =
+        find_chord(buck, buck(water.reference + p.warmth), p, conductances, water, gas_warmth, vapour, step);
     const Real latent = water.evaporation(reference + p.warmth);
     const ParticleResponse r = wet_response(p, conductances, line, latent, step);
     const Real end = p.warmth + step / p.capacity *
@@ -128,7 +129,8 @@ TEST(ParticleResponse, ChordIsOfSecondOrder) {
       const Real first = rate(y);
       y += h / 2 * (first + rate(y + h * first));
     }
-    const ValueAndSlope line = find_chord(buck, p, conductances, water, 10, 0.005, step);
+    const ValueAndSlope line =
+        find_chord(buck, buck(water.reference + p.warmth), p, conductances, water, 10, 0.005, step);
     const Real latent = water.evaporation(reference + p.warmth);
     const ParticleResponse r = wet_response(p, conductances, line, latent, step);
     const Real end = p.warmth + step / p.capacity * (r.heat(10, 0.005) - latent * r.evaporation(10, 0.005));
@@ -154,11 +156,15 @@ TEST(ParticleResponse, FallsToTheWetBulbTemperature) {
       const Real mu = cfd::sutherland_viscosity(film), rho = cfd::ideal_gas_density(atmosphere, film, 0);
       const Real k = 0.0263 * std::pow(film / 300, 0.8), diffusivity = 2.6e-5 * std::pow(film / 298.15, 1.81);
       const Real re = rho * speed * d / mu;
-      const Real nu = RanzMarshall{}({1, re, mu * 1007 / k}),
-                 sh = RanzMarshall{}({1, re, mu / (rho * diffusivity)});
+      const TransferLine line_of_transfer = RanzMarshall{}(1, re);
+      const auto number = [&](Real ratio) {
+        return line_of_transfer.still + line_of_transfer.stirred * std::cbrt(ratio);
+      };
+      const Real nu = number(mu * 1007 / k), sh = number(mu / (rho * diffusivity));
       Conductances c{nu * k * pi * d, rho * sh * diffusivity * pi * d};
       if (stefan) c.vapour *= stefan_factor(buck(reference + p.warmth).value, gas_vapour);
-      const ValueAndSlope line = find_chord(buck, p, c, water, air - reference, gas_vapour, 1);
+      const ValueAndSlope line =
+          find_chord(buck, buck(water.reference + p.warmth), p, c, water, air - reference, gas_vapour, 1);
       const Real latent = water.evaporation(reference + p.warmth);
       const ParticleResponse r = wet_response(p, c, line, latent, 1);
       p.warmth +=
