@@ -1,10 +1,16 @@
 // One number of one particle, on the device and on the host.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/types.hpp"
 #include "core/vector.hpp"
+#include "core/views.hpp"
 #include "dem/particles.hpp"
 #include "heat/film_laws.hpp"
 #include "tools/pellicle/output_fields.hpp"
@@ -68,21 +74,52 @@ static_assert(particle_quantities.size() == 21 && particle_quantities[3].name ==
                   particle_quantities[20].name == "last_hit_time",
               "the codes above are positions in particle_quantities");
 
-/// A host copy of the particles, in the order of their ids, for output. Columns that the case has not are empty.
+/// Rows of the particles' arrays in the order of their ids.
+using RowOrder = std::shared_ptr<const std::vector<std::int32_t>>;
+
+/// One column of the particles as seen by the host, in the order of their ids. Where the device is the host it is the
+/// particles' own memory, read in another order: a copy of millions of particles would double what they take.
+template <class T>
+class HostColumn {
+ public:
+  HostColumn() = default;
+  HostColumn(const DeviceArray<T>& column, RowOrder order)
+      : values_(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), column)), order_(std::move(order)) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): columns of numbers that are at hand
+  HostColumn(std::initializer_list<T> values) : values_("tools::host_column::values", values.size()) {
+    auto order = std::make_shared<std::vector<std::int32_t>>();
+    for (const T& value : values) {
+      values_(order->size()) = value;
+      order->push_back(static_cast<std::int32_t>(order->size()));
+    }
+    order_ = std::move(order);
+  }
+
+  std::size_t size() const { return order_ ? order_->size() : 0; }
+  bool empty() const { return size() == 0; }
+  const T& operator[](std::size_t n) const { return values_((*order_)[n]); }
+
+ private:
+  Kokkos::View<T*, Kokkos::HostSpace> values_;
+  RowOrder order_;
+};
+
+/// The particles as outputs on the host see them, in the order of their ids. Columns that the case has not are empty.
+/// To be used before the particles change.
 struct HostParticles {
-  std::vector<dem::PositionRadius> position_radius;
-  std::vector<dem::VelocitySpin> velocity_spin;
-  std::vector<Real> mass;
-  std::vector<dem::Vec3f> acceleration;
-  std::vector<Real> temperature;
-  std::vector<heat::Film> film;
-  std::vector<spray::HitRecord> hits;
+  HostColumn<dem::PositionRadius> position_radius;
+  HostColumn<dem::VelocitySpin> velocity_spin;
+  HostColumn<Real> mass;
+  HostColumn<dem::Vec3f> acceleration;
+  HostColumn<Real> temperature;
+  HostColumn<heat::Film> film;
+  HostColumn<spray::HitRecord> hits;
   Real solids_density = 1;
   std::size_t count() const { return mass.size(); }
   ParticleSample sample(std::size_t p) const;
 };
 
-/// Copies the particles to the host and sorts them by id.
+/// Particles in the order of their ids.
 HostParticles copy_to_host(const ParticleColumns& columns);
 
 }  // namespace pellicle::tools

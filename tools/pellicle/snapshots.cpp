@@ -104,7 +104,7 @@ void write_particle_field(core::Hdf5File& file, const std::string& group, const 
   } else if (field == "speed") {
     put([&](std::size_t p) { return norm(motions[p].velocity()); });
   } else if (field == "acceleration") {
-    put([&](std::size_t p) { return convert<Real>(particles.acceleration[p]); });
+    put([&](std::size_t p) { return convert<Real>(particles.sample(p).acceleration); });
   } else if (field == "temperature") {
     put([&](std::size_t p) { return particles.sample(p).temperature; });
   } else if (field == "film_liquid") {
