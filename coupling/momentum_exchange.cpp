@@ -216,7 +216,6 @@ void MomentumExchange::allocate_particles(Index count) {
   if (sampled_.extent(0) >= static_cast<std::size_t>(count) && sampled_.extent(0) > 0) return;
   sampled_ = make_device<SampledGas>("coupling::momentum_exchange::sampled", count);
   received_ = make_device<Received>("coupling::momentum_exchange::received", count);
-  particle_load_ = make_device<CellLoad>("coupling::momentum_exchange::particle_load", count);
   const Index blocks = (count + fixed_block - 1) / fixed_block;
   fixed_impulse_ = make_device<Vec3>("coupling::momentum_exchange::fixed_impulse", blocks);
   fixed_impulse_host_ = make_host<Vec3>("coupling::momentum_exchange::fixed_impulse_host", blocks);
@@ -265,10 +264,11 @@ FluidForce MomentumExchange::fluid_force(const dem::Particles& particles) const 
 
 void MomentumExchange::deposit_loads(const dem::Particles& particles, Real gas_step) {
   update_footprints(particles);
+  const auto particle_load = scratch_.take<CellLoad>(particles.count);
   Kokkos::parallel_for("coupling::momentum_exchange::compute_loads", DeviceRange(0, particles.count),
-                       ComputeLoads{particles.position_radius, sampled_, received_, particle_load_,
+                       ComputeLoads{particles.position_radius, sampled_, received_, particle_load,
                                     options_.exchange, gas_step > 0 ? 1 / gas_step : 0});
-  sums_.compute(transfer_footprint_, particle_load_, cell_load_);
+  sums_.compute(transfer_footprint_, particle_load, cell_load_);
   bound_report_ = bound_.apply(cell_load_);
   smoothing_.apply(cell_load_);  // raises no solids fraction above the largest: the bound still holds
   const Index cells = transfer_.cell_count();

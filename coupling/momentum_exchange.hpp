@@ -3,6 +3,7 @@
 
 #include "cfd/gas_state.hpp"
 #include "core/cartesian_grid.hpp"
+#include "core/scratch_memory.hpp"
 #include "core/types.hpp"
 #include "core/vector.hpp"
 #include "core/views.hpp"
@@ -89,6 +90,8 @@ class MomentumExchange {
   }
   /// What walls leave of the gas grid's cells; empty if they do not cut it.
   const CutGrid& cut_grid() const { return cut_; }
+  /// Memory for a number or a few of each particle, free between deposit and the next one.
+  const core::ScratchMemory& scratch() const { return scratch_; }
   const CartesianGrid& transfer_grid() const { return transfer_; }
   /// Void fraction of the transfer grid's cells.
   const HostArray<Real>& transfer_void_fraction() const { return void_fraction_host_; }
@@ -121,7 +124,8 @@ class MomentumExchange {
   DeviceArray<Real> void_fraction_;
   DeviceArray<SampledGas> sampled_;
   DeviceArray<Received> received_;
-  DeviceArray<CellLoad> particle_load_, cell_load_;
+  core::ScratchMemory scratch_{"coupling::momentum_exchange::scratch"};  // loads of particles, in deposit
+  DeviceArray<CellLoad> cell_load_;
   DeviceArray<Vec3> fixed_impulse_;  // of blocks of particles [N s]
 
   // Host.

@@ -276,14 +276,6 @@ HeatExchange::HeatExchange(const HeatOptions& options, const HostArray<Real>& op
       zero_("heat::heat_exchange::zero", open_volume.extent(0)),
       momentum_rate_("heat::heat_exchange::momentum_rate", open_volume.extent(0)) {}
 
-void HeatExchange::allocate_particles(Index count) {
-  if (response_.extent(0) >= static_cast<std::size_t>(count) && response_.extent(0) > 0) return;
-  // Room for those that are fed.
-  response_ = DeviceArray<ParticleResponse>(
-      Kokkos::view_alloc("heat::heat_exchange::response", Kokkos::WithoutInitializing),
-      static_cast<std::size_t>(count + count / 4));
-}
-
 void HeatExchange::copy_gas(const cfd::GasState& gas) {
   const HostArray<Real>& temperature = gas.scalars[index_of(cfd::Scalar::temperature)];
   const HostArray<Real>& moisture = gas.scalars[index_of(cfd::Scalar::moisture)];
@@ -306,7 +298,7 @@ coupling::CellRows HeatExchange::find_rows(const coupling::MomentumExchange& exc
 
 void HeatExchange::update(const dem::Particles& particles, const coupling::MomentumExchange& exchange,
                           const cfd::GasState& gas, const SurfaceState& surface, Real step) {
-  allocate_particles(particles.count);
+  const auto response = exchange.scratch().take<ParticleResponse>(particles.count);
   copy_gas(gas);
   const coupling::CellRows rows = find_rows(exchange);
   const coupling::FootprintView& footprint = exchange.gas_footprint().view();
@@ -325,22 +317,22 @@ void HeatExchange::update(const dem::Particles& particles, const coupling::Momen
                             options_.evaporation,
                             options_.stefan_flow,
                             step};
-  Kokkos::parallel_for("heat::heat_exchange::respond", all, Respond{around, response_});
+  Kokkos::parallel_for("heat::heat_exchange::respond", all, Respond{around, response});
   Index changed = 1;
   for (rounds_ = 0; rounds_ < most_rounds && changed > 0; ++rounds_) {
     Kokkos::parallel_for("heat::heat_exchange::solve_cells", cells,
-                         SolveCells{rows, response_, gas_, end_, options_.gas.capacity,
+                         SolveCells{rows, response, gas_, end_, options_.gas.capacity,
                                     options_.water.vapour_capacity, step, options_.one_way});
     changed = 0;
     if (!options_.evaporation) continue;
-    Kokkos::parallel_reduce("heat::heat_exchange::review", all, Review{around, end_, response_}, changed);
+    Kokkos::parallel_reduce("heat::heat_exchange::review", all, Review{around, end_, response}, changed);
   }
   Kokkos::parallel_for(
       "heat::heat_exchange::sum_gains", cells,
-      SumGains{rows, response_, end_, surface.temperature(), particles.velocity_spin, options_.water, gain_});
+      SumGains{rows, response, end_, surface.temperature(), particles.velocity_spin, options_.water, gain_});
   Index broken = 0;
   Kokkos::parallel_reduce("heat::heat_exchange::finish_particles", all,
-                          FinishParticles{view, footprint, end_, response_, step}, broken);
+                          FinishParticles{view, footprint, end_, response, step}, broken);
   Kokkos::deep_copy(gain_host_, gain_);
   book(step);
   if (broken > 0) {

@@ -80,7 +80,6 @@ class HeatExchange {
   void load(const core::CheckpointReader& file);
 
  private:
-  void allocate_particles(Index count);
   void copy_gas(const cfd::GasState& gas);
   coupling::CellRows find_rows(const coupling::MomentumExchange& exchange);
   void book(Real step);
@@ -93,7 +92,6 @@ class HeatExchange {
   DeviceArray<CellGas> gas_;
   DeviceArray<CellEnd> end_;
   DeviceArray<CellGain> gain_;
-  DeviceArray<ParticleResponse> response_;
 
   // Host.
   HostArray<Real> volume_;

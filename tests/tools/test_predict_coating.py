@@ -73,15 +73,18 @@ def run(folder, *more):
 
 
 class Predict(unittest.TestCase):
-    def check(self, gamma_shape, sizes, seed):
+    def check(self, gamma_shape, sizes, seed, spray_start=0.0):
         rng = np.random.default_rng(seed)
         particles, measured, batch = 3000, 4.0, 40.0
         classes = [p % sizes for p in range(particles)]
         factor = [1 + 0.5 * (c - (sizes - 1) / 2) for c in classes]
         entries, gains = draw(rng, particles, batch, gamma_shape, factor)
+        gains = [np.where(when < spray_start, 0, gain) for when, gain in zip(entries, gains)]
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             write_results(folder, entries, gains, measured, classes)
+            (folder / "case.yaml").write_text(f"spray:\n- name: a\n  from: {spray_start}  # [s]\n  to: 40  # [s]\n- name: b\n"
+                                              "  from: 30.5  # [s]\noutput:\n- from: -7\n")
             done = run(folder, "--time", batch, "--json", folder / "p.json")
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             found = json.loads((folder / "p.json").read_text())
@@ -114,6 +117,14 @@ class Predict(unittest.TestCase):
         basis, prediction = self.check(4, 2, 3)
         self.assertAlmostEqual(basis["variation_of_size_classes"], 0.25, delta=0.03)
         self.assertGreater(prediction["coating_cov"], 0.29)
+
+    def test_spray_that_begins_later(self):
+        # Of 40 s the last 38.5: sqrt((1 + 0.25) / 38.5) = 0.180. Of the 4 s measured 1.5 are without spray.
+        basis, prediction = self.check(4, 1, 4, spray_start=1.5)
+        self.assertEqual(basis["spray_start"], 1.5)
+        self.assertAlmostEqual(basis["sd_gain"], 1e-9, delta=0.06e-9)
+        self.assertAlmostEqual(prediction["coating_mean"], 38.5e-9, delta=1.5e-9)
+        self.assertAlmostEqual(prediction["coating_cov"], 0.180, delta=0.01)
 
     def test_messages(self):
         with tempfile.TemporaryDirectory() as name:

@@ -17,9 +17,8 @@ namespace {
 void write_table(core::Hdf5File& file, const std::string& group, const core::CsvTable& table) {
   const std::vector<double>& time = table.columns.front();
   // Every time has as many rows as there are bins.
-  const auto bins =
-      static_cast<std::size_t>(std::find_if(time.begin(), time.end(), [&](double t) { return t != time[0]; }) -
-                               time.begin());
+  const auto bins = static_cast<std::size_t>(
+      std::find_if(time.begin(), time.end(), [&](double t) { return t != time[0]; }) - time.begin());
   const std::size_t times = bins > 0 ? table.rows() / bins : 0;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const std::string& header = table.header[c];

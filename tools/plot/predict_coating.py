@@ -8,6 +8,9 @@ the coating M(t) has, for t well over a cycle,
     mean M = r t,  r = mean(g) / mean(tau)
     var M = t / mean(tau) (var g + r^2 var tau - 2 r cov(g, tau))
 
+The spray may begin later than the run (`spray.from`, read from the results' case.yaml): t counts from there, cycles from
+the run's start.
+
 What a short run measures of this is censored: long cycles do not end in it. Mean(tau) is therefore particles x time /
 entries, which needs no cycle to end; var tau comes from the Kaplan-Meier estimate of the distribution (Kaplan & Meier 1958,
 J. Am. Stat. Assoc. 53, 457) of ended and open cycles, with an exponential tail that gives the same mean. The rate r is the
@@ -21,6 +24,7 @@ import csv
 import json
 import math
 import pathlib
+import re
 import sys
 
 
@@ -34,6 +38,15 @@ def read_last(path):
         sys.exit(f"{path}: it has no rows yet; let the run go on to the zone's first `every`")
     last = table[-1]["time"]
     return [row for row in table if row["time"] == last]
+
+
+def read_spray_start(case):
+    """The earliest `from` of the nozzles in a case as run [s]; 0 without such a file or without spray."""
+    if not case.is_file():
+        return 0.0
+    block = re.search(r"^spray:\n((?:[ -].*\n)*)", case.read_text(), re.MULTILINE)
+    starts = re.findall(r"^[ -] from: ([-+.0-9e]+)", block[1], re.MULTILINE) if block else []
+    return min(map(float, starts), default=0.0)
 
 
 def survival(times):
@@ -83,18 +96,21 @@ def add(rows):
     return total
 
 
-def moments(sums, time):
-    """Of cycles from sums over particles; `steady` needs none to have ended."""
+def moments(sums, time, sprayed):
+    """Of cycles from sums over particles in `time`, of which they were `sprayed` for so long; `steady` needs none to have
+    ended."""
     n = sums["cycles"]
     if n < 2 or sums["entries"] < 1 or sums["coating"] <= 0:
         return None
-    mean_time, mean_gain = sums["cycle_time"] / n, sums["gain"] / n
+    # Cycles before the spray brought nothing; they are that share of all of them.
+    gain, gain_squared, time_gain = (sums[name] * time / sprayed for name in ("gain", "gain_squared", "time_gain"))
+    mean_time, mean_gain = sums["cycle_time"] / n, gain / n
     return {
         "steady": sums["particles"] * time / sums["entries"],
-        "rate": sums["coating"] / sums["particles"] / time,
+        "rate": sums["coating"] / sums["particles"] / sprayed,
         "time_variance": max(0.0, (sums["cycle_time_squared"] - n * mean_time**2) / (n - 1)),
-        "gain_variance": max(0.0, (sums["gain_squared"] - n * mean_gain**2) / (n - 1)),
-        "covariance": (sums["time_gain"] - n * mean_time * mean_gain) / (n - 1),
+        "gain_variance": max(0.0, (gain_squared - n * mean_gain**2) / (n - 1)),
+        "covariance": (time_gain - n * mean_time * mean_gain) / (n - 1),
     }
 
 
@@ -118,10 +134,13 @@ def variation_of_classes(rows):
     return math.sqrt(max(0.0, variance)) / mean
 
 
-def predict(groups, times, at):
-    """Mean [kg] and coefficient of variation of the coating at the times `at`, and what they are made of."""
+def predict(groups, times, at, start=0.0):
+    """Mean [kg] and coefficient of variation of the coating at the times `at`, and what they are made of. Sprayed from
+    `start` on."""
     time = groups[0]["time"]
-    every = moments(add(groups), time)
+    if not (time > start and min(at) > start):
+        sys.exit(f"the spray begins at {start:g} s: later times are needed")
+    every = moments(add(groups), time, time - start)
     if every is None:
         sys.exit("fewer than two cycles have ended, or nothing is coated yet: a longer run is needed")
     spread, open_share = cycle_variance(times, every["steady"])
@@ -129,7 +148,7 @@ def predict(groups, times, at):
     widening = spread / every["time_variance"] if every["time_variance"] > 0 else 1.0
 
     def figures(rows):
-        m = moments(add(rows), time)
+        m = moments(add(rows), time, time - start)
         if m is None:
             return None
         r = m["rate"]
@@ -137,7 +156,7 @@ def predict(groups, times, at):
                - 2 * r * math.sqrt(widening) * m["covariance"])
         classes = variation_of_classes(rows)
         result = []
-        for t in at:
+        for t in (when - start for when in at):
             own = max(0.0, one) * t / m["steady"]
             result.append((r * t, math.sqrt(own + (classes * r * t) ** 2) / (r * t)))
         return result
@@ -155,7 +174,7 @@ def predict(groups, times, at):
             errors.append(math.sqrt((len(values) - 1) / len(values) * sum((v - mean) ** 2 for v in values)))
         predictions.append({"time": t, "coating_mean": whole[n][0], "coating_mean_error": errors[0],
                             "coating_cov": whole[n][1], "coating_cov_error": errors[1]})
-    basis = {"measured_time": time, "mean_cycle_time": every["steady"], "sd_cycle_time": math.sqrt(spread),
+    basis = {"measured_time": time, "spray_start": start, "mean_cycle_time": every["steady"], "sd_cycle_time": math.sqrt(spread),
              "cycles_beyond_distribution": open_share, "mean_gain": every["rate"] * every["steady"],
              "sd_gain": math.sqrt(every["gain_variance"]), "variation_of_size_classes": variation_of_classes(groups)}
     return basis, predictions
@@ -173,8 +192,9 @@ def main():
     for path in (groups_file, times_file):
         if not path.is_file():
             sys.exit(f"{path}: not there; allowed: the results of a run whose case has the zone {arguments.zone}")
-    basis, predictions = predict(read_last(groups_file), read_last(times_file), arguments.time)
-    print(f"measured over {basis['measured_time']:g} s: cycle time {basis['mean_cycle_time']:.4g} s "
+    basis, predictions = predict(read_last(groups_file), read_last(times_file), arguments.time,
+                                 read_spray_start(arguments.results / "case.yaml"))
+    print(f"measured over {basis['measured_time']:g} s, sprayed from {basis['spray_start']:g} s: cycle time {basis['mean_cycle_time']:.4g} s "
           f"(standard deviation {basis['sd_cycle_time']:.4g} s), gain {basis['mean_gain']:.4g} kg a cycle "
           f"(standard deviation {basis['sd_gain']:.4g} kg)")
     if basis["cycles_beyond_distribution"] > 0.2:
