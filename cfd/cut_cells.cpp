@@ -67,6 +67,7 @@ class Cutter {
     close_thin_surfaces();
     leave_out_small_cells();
     keep_connected();
+    hand_over_pieces_of_closed_cells();
     close_faces_of_closed_cells();
     collect();
     return std::move(result_);
@@ -380,7 +381,7 @@ class Cutter {
     }
   }
 
-  // Calls f(face number, cell beyond) for the open faces of a cell that lead to another cell.
+  // Calls f(cell beyond, open area [m2]) for the open faces of a cell that lead to another cell.
   template <class F>
   void for_open_faces(Index c, F&& f) const {
     const Index3 at = grid_.coordinates(c);
@@ -389,14 +390,15 @@ class Cutter {
       const Index minus = stencil_.face(axis, at.x, at.y, at.z);
       for (const bool upper : {false, true}) {
         const Index face = minus + (upper ? stencil_.face_step(axis) : 0);
-        if (result_.open_share[a][static_cast<std::size_t>(face)] == 0) continue;
+        const Real share = result_.open_share[a][entry(face)];
+        if (share == 0) continue;
         Index3 to = at;
         to[axis] += upper ? 1 : -1;
         if (to[axis] < 0 || to[axis] >= stencil_.n[axis]) {
           if (!stencil_.periodic[a]) continue;
           to[axis] = upper ? 0 : stencil_.n[axis] - 1;
         }
-        f(stencil_.cell(to.x, to.y, to.z));
+        f(stencil_.cell(to.x, to.y, to.z), share * grid_.volume(at.x, at.y, at.z) / grid_.width(axis, at[axis]));
       }
     }
   }
@@ -417,7 +419,7 @@ class Cutter {
         const Index c = stack.back();
         stack.pop_back();
         ++sizes.back();
-        for_open_faces(c, [&](Index to) {
+        for_open_faces(c, [&](Index to, Real) {
           const auto t = static_cast<std::size_t>(to);
           if (result_.open[t] == 0 || group[t] >= 0) return;
           group[t] = own;
@@ -430,6 +432,58 @@ class Cutter {
       if (group[c] != static_cast<std::int32_t>(largest - sizes.begin())) result_.open[c] = 0;
       result_.open_cells += result_.open[c];
     }
+  }
+
+  // A cell left out is a sliver of gas at a wall, most of all at one that lies on a plane of the grid. Its wall then is
+  // that of the cells that its open faces led to.
+  void hand_over_pieces_of_closed_cells() {
+    std::map<Index, std::size_t> piece_in;  // of an open cell, not of a thin surface
+    std::vector<SurfacePiece> left_over;
+    for (std::size_t s = 0; s < result_.pieces.size(); ++s) {
+      const SurfacePiece& piece = result_.pieces[s];
+      if (piece.beyond >= 0) continue;
+      if (result_.open[entry(piece.cell)] == 0) {
+        left_over.push_back(piece);
+      } else {
+        piece_in.emplace(piece.cell, s);
+      }
+    }
+    std::map<Index, Vec3> centroid_of;
+    for (const PartCell& part : result_.parts) centroid_of.emplace(part.cell, part.centroid);
+    for (const SurfacePiece& piece : left_over) {
+      Real all = 0;
+      for_open_faces(piece.cell, [&](Index to, Real area) { all += is_open(to) ? area : 0; });
+      for_open_faces(piece.cell, [&](Index to, Real area) {
+        if (!is_open(to)) return;
+        SurfacePiece given = piece;
+        given.cell = to;
+        given.area *= area / all;
+        const auto held = piece_in.find(to);
+        if (held != piece_in.end() && result_.pieces[held->second].surface == given.surface) {
+          join(result_.pieces[held->second], given);
+          return;
+        }
+        const Index3 at = grid_.coordinates(to);
+        const auto part = centroid_of.find(to);
+        const Vec3 gas = part != centroid_of.end()
+                             ? part->second
+                             : Vec3{grid_.center(0, at.x), grid_.center(1, at.y), grid_.center(2, at.z)};
+        given.distance = std::max(std::abs(dot(gas - given.point, given.normal)), 1e-3 * smallest_width(at));
+        piece_in.emplace(to, result_.pieces.size());
+        result_.pieces.push_back(given);
+      });
+    }
+  }
+
+  bool is_open(Index c) const { return result_.open[entry(c)] != 0; }
+
+  // One piece of both, as far from the gas as the first.
+  static void join(SurfacePiece& held, const SurfacePiece& added) {
+    const Vec3 vector = held.area * held.normal + added.area * added.normal;
+    const Real area = held.area + added.area;
+    held.point = (1 / area) * (held.area * held.point + added.area * added.point);
+    if (norm(vector) > 0) held.normal = (1 / norm(vector)) * vector;
+    held.area = area;
   }
 
   void close_faces_of_closed_cells() {

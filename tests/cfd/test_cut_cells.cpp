@@ -200,6 +200,30 @@ TEST(CutCells, SurfacesOnGridPlanes) {
   }
 }
 
+// The sides of a block on grid planes, wherever these are: every cell beside it has the wall at half a cell's distance, with
+// the normal into the gas, and the areas add up to the block's.
+TEST(CutCells, BlockOnGridPlanesIsAWall) {
+  const CartesianGrid grid(Box{{0, 0, 0}, {1, 1, 1}}, {8, 8, 8});
+  constexpr Real h = 0.125;
+  for (Index low = 1; low < 7; ++low) {
+    const Real from = h * low, to = from + h;
+    const CutCells cut = cut_cells(grid, {make_surface(BoxSurface{{-1, -1, from}, {2, 2, to}})},
+                                   {0.4, 0.4, low > 3 ? 0.01 : 0.99});
+    const bool above = low <= 3;
+    Real area = 0;
+    for (const SurfacePiece& piece : cut.pieces) {
+      EXPECT_EQ(piece.cell / 64, above ? low + 1 : low - 1);
+      EXPECT_NEAR(piece.normal.z, above ? 1 : -1, 1e-6);
+      EXPECT_NEAR(piece.distance, 0.5 * h, 1e-6);
+      EXPECT_NEAR(piece.point.z, above ? to : from, 1e-6);
+      area += piece.area;
+    }
+    EXPECT_NEAR(area, 1, 1e-5) << "block from " << from;
+    EXPECT_EQ(cut.pieces.size(), 64u);
+    EXPECT_NEAR(open_volume(grid, cut), above ? 1 - to : from, 1e-5);
+  }
+}
+
 // A mesh is cut as the shape it approximates.
 TEST(CutCells, MeshOfABoxIsTheBox) {
   const Vec3 lo{0.13, 0.21, 0.17};

@@ -164,5 +164,40 @@ TEST(ImmersedFlow, TiltedChannelConverges) {
   EXPECT_GT(0.5 * std::log2(coarse.velocity_error / fine.velocity_error), 1.5);
 }
 
+// A channel between two blocks whose sides lie on grid planes, driven along: the parabola of Poiseuille as between sides of
+// the domain, each block taking half of the force.
+TEST(ImmersedFlow, BlocksOnGridPlanesHoldTheGas) {
+  constexpr Index n = 16;
+  constexpr Real h = 1.0 / n, force = 2, viscosity = 0.5;
+  for (const Index low : {2, 5}) {  // rows below and above the channel, which takes 9
+    const CartesianGrid grid(Box{{0, 0, 0}, {4 * h, h, 1}}, {4, 1, n}, {true, true, false});
+    const Real floor = low * h, roof = floor + 9 * h;
+    ImmersedGeometry immersed;
+    immersed.surfaces = {make_surface(BoxSurface{{-1, -1, -1}, {2, 2, floor}}, "floor"),
+                         make_surface(BoxSurface{{-1, -1, roof}, {2, 2, 2}}, "roof")};
+    immersed.inside = {0.3 * h, 0.3 * h, floor + 4.3 * h};
+    GasOptions options = make_air(Convection::central);
+    options.density = 1;
+    options.viscosity = viscosity;
+    options.body_force = {force, 0, 0};
+    make_tight(options);
+    GasSolver gas(grid, options, {}, immersed);
+    const ParticleExchange exchange = make_empty_exchange(grid);
+    for (int step = 0; step < 60; ++step) gas.update(1, exchange);
+    // The finite volumes of a parabola between walls at half a cell: u = f/(2 mu) (z (H - z) + h2/4) at middles, for the
+    // stress at a wall is taken over half a cell.
+    for (Index k = low; k < low + 9; ++k) {
+      const Real z = grid.center(2, k) - floor;
+      const Real exact = force / (2 * viscosity) * (z * (9 * h - z) + 0.25 * h * h);
+      EXPECT_NEAR(gas.state().velocity(grid.index(1, 0, k)).x, exact, 1e-5 * exact) << low << ' ' << k;
+    }
+    const auto forces = gas.surface_forces();
+    const Real driven = force * 4 * h * h * 9 * h;
+    EXPECT_NEAR(forces[0].x, 0.5 * driven, 1e-5 * driven);
+    EXPECT_NEAR(forces[1].x, 0.5 * driven, 1e-5 * driven);
+    EXPECT_LT(gas.balance().momentum_defect(), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace pellicle::cfd
