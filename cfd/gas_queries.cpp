@@ -54,6 +54,24 @@ std::vector<Vec3> GasSolver::surface_forces() const {
   }
   return total;
 }
+
+std::array<Vec3, 6> GasSolver::side_forces() const {
+  const Impl& s = *impl_;
+  std::array<Vec3, 6> total{};
+  for (std::size_t b = 0; b < s.boundaries.pieces.size(); ++b) {
+    const BoundaryPiece& piece = s.boundaries.pieces[b];
+    if (piece.is_immersed() || piece.kind == PieceKind::inlet || piece.kind == PieceKind::outlet) continue;
+    const bool mirrors =
+        piece.patch >= 0 &&
+        std::holds_alternative<Symmetry>(s.patches[static_cast<std::size_t>(piece.patch)].kind);
+    if (mirrors) continue;
+    Vec3& own = total[side_number(piece.axis, piece.outward)];
+    own -= s.momentum.shear_force(s.fields, b);
+    own[piece.axis] += piece.outward * piece.area * s.faces.boundary_pressure(s.fields, b);
+  }
+  return total;
+}
+
 const GasState& GasSolver::state() const { return impl_->state; }
 const GasBalance& GasSolver::balance() const { return impl_->balance; }
 const ScalarBalance* GasSolver::balance(Scalar scalar) const {

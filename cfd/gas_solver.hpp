@@ -1,6 +1,7 @@
 // The gas solver: volume-averaged incompressible flow on a Cartesian grid, one implicit step at a time.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -75,6 +76,9 @@ class GasSolver {
   Vec3 surface_force(std::size_t surface) const;
   /// Of all surfaces, in their order.
   std::vector<Vec3> surface_forces() const;
+  /// Force of the gas on each side of the domain [N], in the order of Side: pressure and viscous stress of the last step
+  /// where the side is a wall, not on inlets, outlets and planes of symmetry.
+  std::array<Vec3, 6> side_forces() const;
   const GasOptions& options() const;
   const GasState& state() const;
   const GasBalance& balance() const;

@@ -200,5 +200,36 @@ TEST(Boundaries, MovingWallDragsTheGasLinearly) {
   }
 }
 
+// A channel between two sides of the domain, from a uniform inlet to a parabola: the walls take what the pressure loses over
+// the section less what momentum gains, 6/5 of the inlet's. 40 rows; the outlet is 5 lengths of development away.
+TEST(Boundaries, SidesTakeThePressureDrop) {
+  constexpr Real height = 0.1, width = 0.02, length = 0.4, speed = 1, density = 1;
+  const CartesianGrid grid(Box{{0, 0, 0}, {length, width, height}}, {40, 1, 40});
+  GasOptions options = make_air(Convection::central);
+  options.density = density;
+  options.viscosity = 0.01;
+  make_tight(options);
+  auto patches = symmetry_on({Side::y_min, Side::y_max});
+  patches.push_back({"in", Side::x_min, {}, Inlet{speed, {}}, "case.yaml:2"});
+  patches.push_back({"out", Side::x_max, {}, Outlet{3}, "case.yaml:3"});
+  GasSolver gas(grid, options, patches);
+  gas.initialise({speed, 0, 0});
+  const ParticleExchange exchange = make_empty_exchange(grid);
+  for (int step = 0; step < 200; ++step) gas.update(0.02, exchange);
+  const std::array<Vec3, 6> forces = gas.side_forces();
+  const Real section = height * width;
+  const Real expected = gas.pressure_drop("in", "out") * section - 0.2 * density * speed * speed * section;
+  const Vec3 floor = forces[static_cast<std::size_t>(Side::z_min)];
+  const Vec3 roof = forces[static_cast<std::size_t>(Side::z_max)];
+  EXPECT_NEAR(floor.x, 0.5 * expected, 0.005 * expected);  // the inlet's own shear is a few thousandths
+  EXPECT_NEAR(roof.x, floor.x, 1e-9 * expected);
+  EXPECT_NEAR(roof.z, -floor.z, 1e-9 * roof.z);
+  EXPECT_GT(roof.z, 3 * length * width);  // upwards, by more than the outlet's pressure
+  EXPECT_LT(roof.z, gas.patch_pressure("in") * length * width);
+  for (const Side side : {Side::x_min, Side::x_max, Side::y_min, Side::y_max}) {
+    EXPECT_EQ(norm(forces[static_cast<std::size_t>(side)]), 0);  // openings and planes of symmetry
+  }
+}
+
 }  // namespace
 }  // namespace pellicle::cfd

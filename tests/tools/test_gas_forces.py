@@ -26,6 +26,21 @@ output:
   checkpoint: {every: 0.1}
   probes: [{name: floor, wall: floor, every: 0.01}, {name: lid, wall: lid, quantities: [gas_force_x], every: 0.02}]
 """
+# The same between two sides of the domain, and the gas is pressed down.
+SIDES = """
+domain: {min: [0, 0, 0], max: [0.05, 0.05, 0.1], periodic: [x, y]}
+time: {end: 0.3, gas_step: 0.01}
+walls:
+  - {name: sides, box: domain, material: steel}
+  - {name: floor, box: domain, open: [top], material: steel}
+gas:
+  density: 1
+  viscosity: 1
+  body_force: [3, 0, -2]
+  grid: {cells: [2, 2, 20]}
+output:
+  probes: [{name: sides, wall: sides, every: 0.01}, {name: floor, wall: floor, every: 0.01}]
+"""
 # In steady state the walls take what drives the gas: force per volume times volume, half each.
 EACH = 3 * 0.05 * 0.05 * (0.0877 - 0.0123) / 2
 
@@ -66,6 +81,21 @@ class GasForces(unittest.TestCase):
             for name in ("floor.csv", "lid.csv"):
                 self.assertEqual((Path(folder) / "parts/probes" / name).read_text(encoding="utf-8"),
                                  (Path(folder) / "whole/probes" / name).read_text(encoding="utf-8"))
+
+    def test_sides_of_the_domain_are_walls_too(self):
+        volume = 0.05 * 0.05 * 0.1
+        with tempfile.TemporaryDirectory() as folder:
+            case = Path(folder) / "case.yaml"
+            case.write_text(SIDES, encoding="utf-8")
+            done = run(case, Path(folder) / "out")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            sides = rows_of(Path(folder) / "out/probes/sides.csv")[-1]
+            # exp(-pi^2 0.3/0.1^2) of the start is left.
+            self.assertAlmostEqual(float(sides["gas_force_x [N]"]), 3 * volume, delta=1e-6 * volume)
+            self.assertAlmostEqual(float(sides["gas_force_y [N]"]), 0, delta=1e-9)
+            self.assertAlmostEqual(float(sides["gas_force_z [N]"]), -2 * volume, delta=1e-4 * volume)  # tolerance of pressure
+            floor = rows_of(Path(folder) / "out/probes/floor.csv")[-1]
+            self.assertAlmostEqual(float(floor["gas_force_x [N]"]), 1.5 * volume, delta=1e-6 * volume)
 
     def test_what_cannot_be_shown_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -12,6 +12,7 @@
 #include "tools/pellicle/build_case.hpp"
 #include "tools/pellicle/build_walls.hpp"
 #include "tools/pellicle/case_checks.hpp"
+#include "tools/pellicle/gas_wall_checks.hpp"
 
 namespace pellicle::tools {
 
@@ -114,12 +115,10 @@ std::string describe_parted_inlets(const CaseSpec& spec, const cfd::ImmersedGeom
       inlets[least]->where, inlets[least]->name, others);
 }
 
-}  // namespace
-
 // Sides where the gas stops though neither a boundary nor a wall of the case says so: where a vessel leaks.
-std::string describe_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geometry) {
-  if (!geometry.is_cut) return {};
+std::string list_unnamed_sides(const CaseSpec& spec, const cfd::FlowGeometry& geometry) {
   std::string sides;
+  if (!geometry.is_cut) return sides;
   for (std::size_t s = 0; s < 6; ++s) {
     const auto side = static_cast<cfd::Side>(s);
     const int axis = cfd::axis_of(side);
@@ -140,16 +139,41 @@ std::string describe_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geomet
     }
     if (open > 0) sides += fmt::format("{}{}", sides.empty() ? "" : ", ", name_of(side));
   }
-  if (sides.empty()) return {};
-  std::string walls;
-  for (const cfd::ImmersedSurface& surface : geometry.surfaces) {
-    walls += fmt::format("{}'{}'", walls.empty() ? "" : ", ", surface.name);
+  return sides;
+}
+
+// Names of the walls that have gas on both sides, or of all.
+std::string list_surfaces(const cfd::FlowGeometry& geometry, bool between_gas) {
+  std::string names;
+  for (std::size_t s = 0; s < geometry.surfaces.size(); ++s) {
+    const bool is_thin =
+        std::any_of(geometry.pieces.begin(), geometry.pieces.end(), [&](const cfd::SurfacePiece& piece) {
+          return piece.beyond >= 0 && static_cast<std::size_t>(piece.surface) == s;
+        });
+    if (between_gas && !is_thin) continue;
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", geometry.surfaces[s].name);
   }
-  return fmt::format(
-      "{}: the gas reaches the sides {} of the domain, which no boundary and no wall names: it stops there "
-      "as at a "
-      "wall. If {} should keep it in, there is a gap between them, or gas.inside lies outside",
-      spec.where("gas"), sides, walls);
+  return names;
+}
+
+}  // namespace
+
+Leaks find_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geometry) {
+  const std::string sides = list_unnamed_sides(spec, geometry);
+  if (sides.empty()) return {};
+  // A body within the gas is none that keeps it in; what has gas on both sides may be.
+  const std::string open_walls = list_surfaces(geometry, true);
+  if (open_walls.empty()) {
+    return {false, fmt::format("{}: the gas around {} reaches the sides {} of the domain, which no boundary and no wall "
+                               "names: it stops there as at a wall",
+                               spec.where("gas"), list_surfaces(geometry, false), sides)};
+  }
+  return {true,
+          fmt::format("{}: the vessel is open: {} has gas on both sides, and the gas reaches the sides {} of the domain, "
+                      "which no boundary and no wall names; allowed: walls without a gap between them and gas.inside "
+                      "within, or, where the gas shall stop at these sides, a wall `box: domain` or boundaries `wall: "
+                      "{{}}`",
+                      spec.where("gas"), open_walls, sides)};
 }
 
 std::vector<dem::Wall> make_walls(const CaseSpec& spec) {
@@ -171,14 +195,17 @@ cfd::ImmersedGeometry make_immersed(const CaseSpec& spec, const std::vector<dem:
 }
 
 cfd::GasSolver make_gas_solver(const CaseSpec& spec, const std::vector<dem::Wall>& walls) {
+  check_wall_motion(spec, walls);
+  check_tubes(spec);
   const cfd::ImmersedGeometry immersed = make_immersed(spec, walls);
   try {
     cfd::GasSolver gas(make_grid(spec.gas->grid, spec.domain), spec.gas->options, spec.gas->boundaries,
                        immersed);
     const std::string cut = describe_cut(gas.geometry());
     if (!cut.empty()) core::log().info("gas: {}", cut);
-    const std::string leaks = describe_leaks(spec, gas.geometry());
-    if (!leaks.empty()) core::log().warn("{}", leaks);
+    const Leaks leaks = find_leaks(spec, gas.geometry());
+    if (leaks.is_open) throw InputError(leaks.message);
+    if (!leaks.message.empty()) core::log().warn("{}", leaks.message);
     return gas;
   } catch (const InputError&) {
     const std::string parted = describe_parted_inlets(spec, immersed);

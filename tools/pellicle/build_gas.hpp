@@ -1,6 +1,9 @@
 // The gas solver of a case: walls as the gas sees them, and the point from which it spreads. Its exchange with particles.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "cfd/gas_solver.hpp"
 #include "coupling/momentum_exchange.hpp"
 #include "dem/walls.hpp"
@@ -24,8 +27,11 @@ std::vector<dem::Wall> make_walls(const CaseSpec& spec);
 /// What the walls left of the grid, one line; empty if nothing cuts it.
 std::string describe_cut(const cfd::FlowGeometry& geometry);
 
-/// A warning of sides that the gas reaches though no boundary and no wall of the case names them, as where a vessel leaks;
-/// empty if there are none.
-std::string describe_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geometry);
+/// Sides of the domain that the gas reaches though no boundary and no wall of the case names them.
+struct Leaks {
+  bool is_open = false;  ///< a wall has gas on both sides: a vessel with a gap, not a body in the gas; not allowed
+  std::string message;   ///< empty if there are no such sides
+};
+Leaks find_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geometry);
 
 }  // namespace pellicle::tools

@@ -573,13 +573,12 @@ class Checker {
   void check_wall_quantities(const ProbeSpec& probe) {
     const auto wall = std::find_if(spec_.walls.begin(), spec_.walls.end(),
                                    [&](const WallSpec& w) { return w.name == *probe.wall; });
-    const bool is_seen = spec_.gas && !wall->box && wall->gas != GasWall::open;
+    const bool is_seen = spec_.gas && (wall->box || wall->gas != GasWall::open);
     for (const auto& name : probe.quantities) {
       const bool of_gas = name.starts_with("gas_force");
       if (of_gas && !is_seen) {
         wrong(probe.where, "quantities",
-              fmt::format("{} needs a wall within the domain that the gas sees; another wall or quantity",
-                          name));
+              fmt::format("{} needs a wall that the gas sees; another wall or quantity", name));
       }
       if (!of_gas && spec_.particles.empty()) {
         wrong(probe.where, "quantities",

@@ -101,7 +101,7 @@ std::vector<std::string> all_quantities(const CaseSpec& spec, const ProbeSpec& p
   std::vector<std::string> names;
   const bool is_seen =
       spec.gas && probe.wall && std::any_of(spec.walls.begin(), spec.walls.end(), [&](const WallSpec& wall) {
-        return wall.name == *probe.wall && !wall.box && wall.gas != GasWall::open;
+        return wall.name == *probe.wall && (wall.box || wall.gas != GasWall::open);
       });
   for (const auto& quantity : quantities_of(probe)) {
     const bool warm = quantity.name == "gas_temperature" || quantity.name == "relative_humidity";

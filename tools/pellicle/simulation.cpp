@@ -312,12 +312,24 @@ void Simulation::move_gas(int parts) {
 /// What the gas does to the walls that it sees.
 void Simulation::add_gas_forces(Real dt) {
   const auto& surfaces = gas_->geometry().surfaces;
-  if (surfaces.empty()) return;
   const std::vector<Vec3> forces = gas_->surface_forces();
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const auto wall = std::find_if(walls_.begin(), walls_.end(),
                                    [&](const WallFigures& w) { return w.name == surfaces[s].name; });
     if (wall != walls_.end()) wall->gas_impulse += dt * forces[s];
+  }
+  const bool boxed =
+      std::any_of(spec_.walls.begin(), spec_.walls.end(), [](const WallSpec& wall) { return wall.box; });
+  if (!boxed) return;
+  const std::array<Vec3, 6> sides = gas_->side_forces();
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const WallSpec& wall = spec_.walls[w];
+    if (!wall.box) continue;
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+      const bool left_out =
+          std::find(wall.open.begin(), wall.open.end(), static_cast<cfd::Side>(side)) != wall.open.end();
+      if (!left_out) walls_[w].gas_impulse += dt * sides[side];
+    }
   }
 }
 
