@@ -398,7 +398,8 @@ class Cutter {
           if (!stencil_.periodic[a]) continue;
           to[axis] = upper ? 0 : stencil_.n[axis] - 1;
         }
-        f(stencil_.cell(to.x, to.y, to.z), share * grid_.volume(at.x, at.y, at.z) / grid_.width(axis, at[axis]));
+        f(stencil_.cell(to.x, to.y, to.z),
+          share * grid_.volume(at.x, at.y, at.z) / grid_.width(axis, at[axis]));
       }
     }
   }

@@ -61,9 +61,8 @@ std::array<Vec3, 6> GasSolver::side_forces() const {
   for (std::size_t b = 0; b < s.boundaries.pieces.size(); ++b) {
     const BoundaryPiece& piece = s.boundaries.pieces[b];
     if (piece.is_immersed() || piece.kind == PieceKind::inlet || piece.kind == PieceKind::outlet) continue;
-    const bool mirrors =
-        piece.patch >= 0 &&
-        std::holds_alternative<Symmetry>(s.patches[static_cast<std::size_t>(piece.patch)].kind);
+    const bool mirrors = piece.patch >= 0 && std::holds_alternative<Symmetry>(
+                                                 s.patches[static_cast<std::size_t>(piece.patch)].kind);
     if (mirrors) continue;
     Vec3& own = total[side_number(piece.axis, piece.outward)];
     own -= s.momentum.shear_force(s.fields, b);

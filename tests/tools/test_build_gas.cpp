@@ -85,18 +85,23 @@ TEST(BuildGas, AVesselThatLeaksIsRefused) {
   EXPECT_EQ(error_of({}), "no error");
   const std::string text = error_of({"walls.cone.cone.to=[0, 0, 100 mm]"});
   EXPECT_EQ(text,
-            "c.yaml:7: gas: the vessel is open: 'cone', 'tube' has gas on both sides, and the gas reaches the sides left, "
-            "right, front, back of the domain, which no boundary and no wall names; allowed: walls without a gap between "
-            "them and gas.inside within, or, where the gas shall stop at these sides, a wall `box: domain` or boundaries "
+            "c.yaml:7: gas: the vessel is open: 'cone', 'tube' has gas on both sides, and the gas reaches "
+            "the sides left, "
+            "right, front, back of the domain, which no boundary and no wall names; allowed: walls without a "
+            "gap between "
+            "them and gas.inside within, or, where the gas shall stop at these sides, a wall `box: domain` "
+            "or boundaries "
             "`wall: {}`");
   // Where it is meant so: a tube in a box, and a body in the gas.
-  EXPECT_EQ(error_of({"walls.cone.cone.to=[0, 0, 100 mm]", "walls.sieve={name: sides, box: domain, material: steel}"}),
+  EXPECT_EQ(error_of({"walls.cone.cone.to=[0, 0, 100 mm]",
+                      "walls.sieve={name: sides, box: domain, material: steel}"}),
             "no error");
   const CaseSpec spec = parse_case(tests::blower_case, "c.yaml");
   const Leaks around = find_leaks(spec, make_gas_solver(spec, make_walls(spec)).geometry());
   EXPECT_FALSE(around.is_open);
   EXPECT_EQ(around.message,
-            "c.yaml:5: gas: the gas around 'plug' reaches the sides left, right, front, back, bottom of the domain, which "
+            "c.yaml:5: gas: the gas around 'plug' reaches the sides left, right, front, back, bottom of the "
+            "domain, which "
             "no boundary and no wall names: it stops there as at a wall");
 }
 
@@ -104,8 +109,10 @@ TEST(BuildGas, AVesselThatLeaksIsRefused) {
 TEST(BuildGas, ATubeThinnerThanCellsIsRefused) {
   EXPECT_EQ(error_of({"walls.tube.cylinder.radius=7.1 mm"}), "no error");
   EXPECT_EQ(error_of({"walls.tube.cylinder.radius=7 mm"}),
-            "--set: walls.tube.cylinder.radius: wall 'tube' is 0.014 m wide, so thin that no cell of the gas may have its "
-            "middle within it; allowed: a radius of at least 0.007071 m, smaller cells (gas.grid), or `gas: open` at a "
+            "--set: walls.tube.cylinder.radius: wall 'tube' is 0.014 m wide, so thin that no cell of the gas "
+            "may have its "
+            "middle within it; allowed: a radius of at least 0.007071 m, smaller cells (gas.grid), or `gas: "
+            "open` at a "
             "wall that the gas passes");
   EXPECT_EQ(error_of({"walls.tube.cylinder.radius=7 mm", "walls.tube.gas=open"}), "no error");
 }
@@ -114,16 +121,20 @@ TEST(BuildGas, ATubeThinnerThanCellsIsRefused) {
 TEST(BuildGas, WallsThatMoveTheGasAreRefused) {
   const std::string swing = "walls.tube.vibration={amplitude: [0, 0, 6 mm], frequency: 10 Hz}";
   EXPECT_EQ(error_of({swing}),
-            "--set: walls.tube.vibration: wall 'tube' swings by 0.006 m along z, and the gas, which takes it as standing "
-            "still, has cells of 0.01 m there; allowed: at most half a cell, or `gas: open` at a wall that the gas passes");
+            "--set: walls.tube.vibration: wall 'tube' swings by 0.006 m along z, and the gas, which takes it "
+            "as standing "
+            "still, has cells of 0.01 m there; allowed: at most half a cell, or `gas: open` at a wall that "
+            "the gas passes");
   EXPECT_EQ(error_of({"walls.tube.vibration={amplitude: [0, 0, 4 mm], frequency: 10 Hz}"}), "no error");
   EXPECT_EQ(error_of({swing, "walls.tube.gas=open"}), "no error");
   const std::string turn = "rate: 10 rad/s, through: [0, 0, 0]";
   EXPECT_EQ(error_of({"walls.tube.spin={axis: [0, 0, 1], " + turn + "}"}), "no error");
   const std::string tumbles = error_of({"walls.tube.spin={axis: [1, 0, 0], " + turn + "}"});
-  EXPECT_EQ(tumbles,
-            "--set: walls.tube.spin: wall 'tube' is not the same at every angle about the axis, and the gas cannot follow "
-            "it; allowed: a shape that is round about the axis, or `gas: open` at a wall that the gas passes");
+  EXPECT_EQ(
+      tumbles,
+      "--set: walls.tube.spin: wall 'tube' is not the same at every angle about the axis, and the gas cannot "
+      "follow "
+      "it; allowed: a shape that is round about the axis, or `gas: open` at a wall that the gas passes");
 }
 
 // Triangles of a cone frustum with a cylinder on top, in mm as drawings have them.

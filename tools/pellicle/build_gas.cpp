@@ -164,16 +164,20 @@ Leaks find_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geometry) {
   // A body within the gas is none that keeps it in; what has gas on both sides may be.
   const std::string open_walls = list_surfaces(geometry, true);
   if (open_walls.empty()) {
-    return {false, fmt::format("{}: the gas around {} reaches the sides {} of the domain, which no boundary and no wall "
-                               "names: it stops there as at a wall",
-                               spec.where("gas"), list_surfaces(geometry, false), sides)};
+    return {
+        false,
+        fmt::format("{}: the gas around {} reaches the sides {} of the domain, which no boundary and no wall "
+                    "names: it stops there as at a wall",
+                    spec.where("gas"), list_surfaces(geometry, false), sides)};
   }
-  return {true,
-          fmt::format("{}: the vessel is open: {} has gas on both sides, and the gas reaches the sides {} of the domain, "
-                      "which no boundary and no wall names; allowed: walls without a gap between them and gas.inside "
-                      "within, or, where the gas shall stop at these sides, a wall `box: domain` or boundaries `wall: "
-                      "{{}}`",
-                      spec.where("gas"), open_walls, sides)};
+  return {
+      true,
+      fmt::format(
+          "{}: the vessel is open: {} has gas on both sides, and the gas reaches the sides {} of the domain, "
+          "which no boundary and no wall names; allowed: walls without a gap between them and gas.inside "
+          "within, or, where the gas shall stop at these sides, a wall `box: domain` or boundaries `wall: "
+          "{{}}`",
+          spec.where("gas"), open_walls, sides)};
 }
 
 std::vector<dem::Wall> make_walls(const CaseSpec& spec) {

@@ -29,8 +29,9 @@ std::string describe_cut(const cfd::FlowGeometry& geometry);
 
 /// Sides of the domain that the gas reaches though no boundary and no wall of the case names them.
 struct Leaks {
-  bool is_open = false;  ///< a wall has gas on both sides: a vessel with a gap, not a body in the gas; not allowed
-  std::string message;   ///< empty if there are no such sides
+  bool is_open =
+      false;  ///< a wall has gas on both sides: a vessel with a gap, not a body in the gas; not allowed
+  std::string message;  ///< empty if there are no such sides
 };
 Leaks find_leaks(const CaseSpec& spec, const cfd::FlowGeometry& geometry);
 

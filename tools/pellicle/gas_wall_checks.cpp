@@ -30,7 +30,8 @@ void check_swing(const CaseSpec& spec, const CartesianGrid& grid, const WallSpec
     // Along an axis of one cell the gas is that of a plane: nothing is resolved there.
     if (grid.cells()[axis] == 1 || std::abs(amplitude[axis]) <= half) continue;
     throw InputError(fmt::format(
-        "{}: wall '{}' swings by {:g} m along {}, and the gas, which takes it as standing still, has cells of "
+        "{}: wall '{}' swings by {:g} m along {}, and the gas, which takes it as standing still, has cells "
+        "of "
         "{:g} m there; allowed: at most half a cell, or `gas: open` at a wall that the gas passes",
         key_of(spec, wall, "vibration"), wall.name, std::abs(amplitude[axis]), "xyz"[axis], 2 * half));
   }
@@ -41,15 +42,17 @@ void check_swing(const CaseSpec& spec, const CartesianGrid& grid, const WallSpec
 void check_turn(const CaseSpec& spec, const WallSpec& wall) {
   if (wall.stl) {
     core::log().warn(
-        "{}: the gas takes wall '{}' as standing still and its surface as moving along itself, which is right for a "
+        "{}: the gas takes wall '{}' as standing still and its surface as moving along itself, which is "
+        "right for a "
         "mesh that is round about the axis alone",
         key_of(spec, wall, "spin"), wall.name);
     return;
   }
-  throw InputError(fmt::format(
-      "{}: wall '{}' is not the same at every angle about the axis, and the gas cannot follow it; allowed: a shape "
-      "that is round about the axis, or `gas: open` at a wall that the gas passes",
-      key_of(spec, wall, "spin"), wall.name));
+  throw InputError(
+      fmt::format("{}: wall '{}' is not the same at every angle about the axis, and the gas cannot follow "
+                  "it; allowed: a shape "
+                  "that is round about the axis, or `gas: open` at a wall that the gas passes",
+                  key_of(spec, wall, "spin"), wall.name));
 }
 
 struct Tube {
@@ -80,10 +83,11 @@ void check_tube(const CaseSpec& spec, const CartesianGrid& grid, const WallSpec&
   }
   const Real least = 0.5 * std::sqrt(square);
   if (tube.radius >= least) return;
-  throw InputError(fmt::format(
-      "{}: wall '{}' is {:g} m wide, so thin that no cell of the gas may have its middle within it; allowed: a radius of "
-      "at least {:.4g} m, smaller cells (gas.grid), or `gas: open` at a wall that the gas passes",
-      key_of(spec, wall, tube.key), wall.name, 2 * tube.radius, least));
+  throw InputError(
+      fmt::format("{}: wall '{}' is {:g} m wide, so thin that no cell of the gas may have its middle within "
+                  "it; allowed: a radius of "
+                  "at least {:.4g} m, smaller cells (gas.grid), or `gas: open` at a wall that the gas passes",
+                  key_of(spec, wall, tube.key), wall.name, 2 * tube.radius, least));
 }
 
 }  // namespace
@@ -105,11 +109,13 @@ void check_tubes(const CaseSpec& spec) {
   for (const WallSpec& wall : spec.walls) {
     if (wall.gas == GasWall::open) continue;
     if (wall.cylinder) {
-      check_tube(spec, grid, wall, {"cylinder.radius", wall.cylinder->from, wall.cylinder->to, wall.cylinder->radius});
+      check_tube(spec, grid, wall,
+                 {"cylinder.radius", wall.cylinder->from, wall.cylinder->to, wall.cylinder->radius});
     }
     if (wall.cone) {
-      check_tube(spec, grid, wall,
-                 {"cone", wall.cone->from, wall.cone->to, std::max(wall.cone->from_radius, wall.cone->to_radius)});
+      check_tube(
+          spec, grid, wall,
+          {"cone", wall.cone->from, wall.cone->to, std::max(wall.cone->from_radius, wall.cone->to_radius)});
     }
   }
 }

@@ -137,7 +137,8 @@ TEST_P(CutStep, ReattachesWhereErturkFinds) {
   const std::string line = "step of a block, " + name + ": reattachment / height";
   tests::record_line(line + ", 17 rows", tests::show(expected), coarse.place, "Erturk 2008");
   tests::record_line(line + ", 33 rows", tests::show(expected), middle.place, "Erturk 2008");
-  tests::expect_line(line + ", 65 rows", expected, fine.place, 0.02 * expected, "Erturk 2008; not extrapolated");
+  tests::expect_line(line + ", 65 rows", expected, fine.place, 0.02 * expected,
+                     "Erturk 2008; not extrapolated");
   tests::expect_line(line + ", 64 rows, block along grid lines", expected, along_lines.place, 0.02 * expected,
                      "Erturk 2008; not extrapolated");
 }
