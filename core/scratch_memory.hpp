@@ -19,10 +19,12 @@ class ScratchMemory {
   template <class T>
   DeviceArray<T> take(Index count) const {
     static_assert(alignof(T) <= 64);  // of Kokkos's allocations
-    const std::size_t wanted = (static_cast<std::size_t>(count) * sizeof(T) + sizeof(Real) - 1) / sizeof(Real);
+    const std::size_t wanted =
+        (static_cast<std::size_t>(count) * sizeof(T) + sizeof(Real) - 1) / sizeof(Real);
     if (memory_.extent(0) < wanted) {
       memory_ = {};  // before the new one is there
-      memory_ = DeviceArray<Real>(Kokkos::view_alloc(label_, Kokkos::WithoutInitializing), wanted + wanted / 4);
+      memory_ =
+          DeviceArray<Real>(Kokkos::view_alloc(label_, Kokkos::WithoutInitializing), wanted + wanted / 4);
     }
     return DeviceArray<T>(reinterpret_cast<T*>(memory_.data()), static_cast<std::size_t>(count));
   }
