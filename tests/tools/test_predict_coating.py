@@ -33,9 +33,19 @@ def draw(rng, particles, until, gamma_shape, factor):
     return entries, gains
 
 
-def write_results(folder, entries, gains, time, classes, longest=4.0, bins=40):
+def write_results(folder, entries, gains, times, classes, longest=4.0, bins=40):
     (folder / "zones").mkdir()
     (folder / "histograms").mkdir()
+    groups, histogram = [], []
+    for time in times:
+        rows = tables_at(entries, gains, time, classes, longest, bins)
+        groups += rows[0] if not groups else rows[0][1:]
+        histogram += rows[1] if not histogram else rows[1][1:]
+    (folder / "zones" / "pass_groups.csv").write_text("\n".join(groups) + "\n")
+    (folder / "histograms" / "pass_times.csv").write_text("\n".join(histogram) + "\n")
+
+
+def tables_at(entries, gains, time, classes, longest, bins):
     header = ("time [s],size_class [-],diameter_from [m],diameter_to [m],group [-],particles [-],entered [-],entries [-],"
               "cycles [-],cycle_time [s],cycle_time_squared [s2],gain [kg],gain_squared [kg2],time_gain [s kg],"
               "coating [kg],coating_squared [kg2]")
@@ -55,16 +65,15 @@ def write_results(folder, entries, gains, time, classes, longest=4.0, bins=40):
             ended[min(bins, int(c / longest * bins))] += 1
         if len(t):
             still_open[min(bins, int((time - t[-1]) / longest * bins))] += 1
-    rows = [header]
+    group_rows = [header]
     for c in range(sums.shape[0]):
         for g in range(GROUPS):
-            rows.append(",".join(map(repr, [float(time), c, 0.0, 0.0, g, *map(float, sums[c, g])])))
-    (folder / "zones" / "pass_groups.csv").write_text("\n".join(rows) + "\n")
+            group_rows.append(",".join(map(repr, [float(time), c, 0.0, 0.0, g, *map(float, sums[c, g])])))
     rows = ["time [s],from [s],to [s],cycles [-],open_cycles [-],visits [-]"]
     for b in range(bins + 1):
         to = "inf" if b == bins else repr(longest * (b + 1) / bins)
         rows.append(f"{time!r},{longest * b / bins!r},{to},{ended[b]},{still_open[b]},0")
-    (folder / "histograms" / "pass_times.csv").write_text("\n".join(rows) + "\n")
+    return group_rows, rows
 
 
 def run(folder, *more):
@@ -82,7 +91,7 @@ class Predict(unittest.TestCase):
         gains = [np.where(when < spray_start, 0, gain) for when, gain in zip(entries, gains)]
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            write_results(folder, entries, gains, measured, classes)
+            write_results(folder, entries, gains, [0.5 * (spray_start + measured), measured], classes)
             (folder / "case.yaml").write_text(f"spray:\n- name: a\n  from: {spray_start}  # [s]\n  to: 40  # [s]\n- name: b\n"
                                               "  from: 30.5  # [s]\noutput:\n- from: -7\n")
             done = run(folder, "--time", batch, "--json", folder / "p.json")
@@ -94,6 +103,9 @@ class Predict(unittest.TestCase):
         # The error of the directly drawn coefficient is about itself / sqrt(2 particles), 1.3 %.
         error = np.hypot(prediction["coating_cov_error"], direct / np.sqrt(2 * particles))
         self.assertLess(abs(prediction["coating_cov"] - direct), 3 * error, (prediction, direct))
+        grown = np.hypot(prediction["coating_cov_growth_error"], direct / np.sqrt(2 * particles))
+        self.assertLess(abs(prediction["coating_cov_growth"] - direct), 3 * grown, (prediction, direct))
+        self.assertLess(prediction["coating_cov_growth_error"], 0.15 * direct)
         self.assertLess(prediction["coating_cov_error"], 0.1 * direct)  # an error bar that says something
         error = np.hypot(prediction["coating_mean_error"], coating.std() / np.sqrt(particles))
         self.assertLess(abs(prediction["coating_mean"] - coating.mean()), 3 * error)
@@ -125,6 +137,20 @@ class Predict(unittest.TestCase):
         self.assertAlmostEqual(basis["sd_gain"], 1e-9, delta=0.06e-9)
         self.assertAlmostEqual(prediction["coating_mean"], 38.5e-9, delta=1.5e-9)
         self.assertAlmostEqual(prediction["coating_cov"], 0.180, delta=0.01)
+
+    def test_cycles_that_come_in_pairs(self):
+        # Every second gain repeats the one before: sqrt((2 + 0.25) / 40) = 0.237, of which cycles alone see 0.177.
+        rng = np.random.default_rng(5)
+        entries, gains = draw(rng, 6000, 40.0, 4, np.ones(6000))
+        for gain in gains:
+            gain[1::2] = gain[0::2][: len(gain[1::2])]
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            write_results(folder, entries, gains, [4.0, 8.0], [0] * 6000, longest=8.0)
+            self.assertEqual(run(folder, "--time", 40, "--json", folder / "p.json").returncode, 0)
+            prediction = json.loads((folder / "p.json").read_text())["predictions"][0]
+        self.assertAlmostEqual(prediction["coating_cov"], 0.177, delta=0.01)
+        self.assertAlmostEqual(prediction["coating_cov_growth"], 0.237, delta=0.02)
 
     def test_messages(self):
         with tempfile.TemporaryDirectory() as name:

@@ -16,6 +16,10 @@ entries, which needs no cycle to end; var tau comes from the Kaplan-Meier estima
 J. Am. Stat. Assoc. 53, 457) of ended and open cycles, with an exponential tail that gives the same mean. The rate r is the
 mass of all coatings over the time. With size classes, the classes' different rates add to the variation.
 
+Successive cycles are not independent where a particle hovers at the zone's edge or in the spray, and what open cycles
+have brought is not among the gains. The second figure, "by growth", needs neither: var M grows linearly in the end, and
+its slope is measured as the variance (within size classes) of the last half of the time less that of the first.
+
 The error is a jackknife over the groups of particles that zones/NAME_groups.csv has.
 """
 
@@ -28,16 +32,22 @@ import re
 import sys
 
 
-def read_last(path):
-    """Rows of the last time in a table, as dictionaries of numbers by the columns' bare names."""
+def read_times(path):
+    """Rows of each time in a table, as dictionaries of numbers by the columns' bare names, in the order of time."""
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
     names = [name.split(" [")[0] for name in rows[0]]
-    table = [dict(zip(names, map(float, row))) for row in rows[1:]]
-    if not table:
+    times = {}
+    for row in rows[1:]:
+        numbers = dict(zip(names, map(float, row)))
+        times.setdefault(numbers["time"], []).append(numbers)
+    if not times:
         sys.exit(f"{path}: it has no rows yet; let the run go on to the zone's first `every`")
-    last = table[-1]["time"]
-    return [row for row in table if row["time"] == last]
+    return [times[t] for t in sorted(times)]
+
+
+def nearest(tables, wanted):
+    return min(tables, key=lambda rows: abs(rows[0]["time"] - wanted))
 
 
 def read_spray_start(case):
@@ -134,9 +144,20 @@ def variation_of_classes(rows):
     return math.sqrt(max(0.0, variance)) / mean
 
 
-def predict(groups, times, at, start=0.0):
-    """Mean [kg] and coefficient of variation of the coating at the times `at`, and what they are made of. Sprayed from
-    `start` on."""
+def variance_within_classes(rows):
+    """Of the coating of a particle [kg2]."""
+    classes = {}
+    for row in rows:
+        classes.setdefault(row["size_class"], []).append(row)
+    sums = [add(members) for members in classes.values()]
+    scatter = sum(c["coating_squared"] - c["coating"] ** 2 / c["particles"] for c in sums if c["particles"] > 0)
+    return scatter / sum(c["particles"] for c in sums)
+
+
+def predict(tables, times, at, start=0.0):
+    """Mean [kg] and coefficients of variation of the coating at the times `at`, and what they are made of. `tables` are the
+    rows of each time; sprayed from `start` on."""
+    groups = tables[-1]
     time = groups[0]["time"]
     if not (time > start and min(at) > start):
         sys.exit(f"the spray begins at {start:g} s: later times are needed")
@@ -144,10 +165,12 @@ def predict(groups, times, at, start=0.0):
     if every is None:
         sys.exit("fewer than two cycles have ended, or nothing is coated yet: a longer run is needed")
     spread, open_share = cycle_variance(times, every["steady"])
+    middle = nearest(tables, 0.5 * (start + time))
+    interval = time - middle[0]["time"]
     # Correlation as of the ended cycles, with the variance that the long ones have too.
     widening = spread / every["time_variance"] if every["time_variance"] > 0 else 1.0
 
-    def figures(rows):
+    def figures(rows, earlier):
         m = moments(add(rows), time, time - start)
         if m is None:
             return None
@@ -155,25 +178,34 @@ def predict(groups, times, at, start=0.0):
         one = (m["gain_variance"] + r * r * widening * m["time_variance"]
                - 2 * r * math.sqrt(widening) * m["covariance"])
         classes = variation_of_classes(rows)
+        now = variance_within_classes(rows)
+        slope = max(0.0, now - variance_within_classes(earlier)) / interval if interval > 0 else math.nan
         result = []
         for t in (when - start for when in at):
             own = max(0.0, one) * t / m["steady"]
-            result.append((r * t, math.sqrt(own + (classes * r * t) ** 2) / (r * t)))
+            grown = max(0.0, now + slope * (t - (time - start)))
+            of_classes = (classes * r * t) ** 2
+            result.append((r * t, math.sqrt(own + of_classes) / (r * t), math.sqrt(grown + of_classes) / (r * t)))
         return result
 
-    whole = figures(groups)
+    whole = figures(groups, middle)
     names = sorted({row["group"] for row in groups})
-    without = [figures([row for row in groups if row["group"] != name]) for name in names]
+
+    def others(rows, name):
+        return [row for row in rows if row["group"] != name]
+
+    without = [figures(others(groups, name), others(middle, name)) for name in names]
     without = [part for part in without if part is not None]
     predictions = []
     for n, t in enumerate(at):
         errors = []
-        for k in (0, 1):
+        for k in (0, 1, 2):
             values = [part[n][k] for part in without]
             mean = sum(values) / len(values)
             errors.append(math.sqrt((len(values) - 1) / len(values) * sum((v - mean) ** 2 for v in values)))
         predictions.append({"time": t, "coating_mean": whole[n][0], "coating_mean_error": errors[0],
-                            "coating_cov": whole[n][1], "coating_cov_error": errors[1]})
+                            "coating_cov": whole[n][1], "coating_cov_error": errors[1],
+                            "coating_cov_growth": whole[n][2], "coating_cov_growth_error": errors[2]})
     basis = {"measured_time": time, "spray_start": start, "mean_cycle_time": every["steady"], "sd_cycle_time": math.sqrt(spread),
              "cycles_beyond_distribution": open_share, "mean_gain": every["rate"] * every["steady"],
              "sd_gain": math.sqrt(every["gain_variance"]), "variation_of_size_classes": variation_of_classes(groups)}
@@ -192,18 +224,19 @@ def main():
     for path in (groups_file, times_file):
         if not path.is_file():
             sys.exit(f"{path}: not there; allowed: the results of a run whose case has the zone {arguments.zone}")
-    basis, predictions = predict(read_last(groups_file), read_last(times_file), arguments.time,
+    basis, predictions = predict(read_times(groups_file), read_times(times_file)[-1], arguments.time,
                                  read_spray_start(arguments.results / "case.yaml"))
-    print(f"measured over {basis['measured_time']:g} s, sprayed from {basis['spray_start']:g} s: cycle time {basis['mean_cycle_time']:.4g} s "
-          f"(standard deviation {basis['sd_cycle_time']:.4g} s), gain {basis['mean_gain']:.4g} kg a cycle "
+    print(f"measured over {basis['measured_time']:g} s, sprayed from {basis['spray_start']:g} s: "
+          f"cycle time {basis['mean_cycle_time']:.4g} s (standard deviation {basis['sd_cycle_time']:.4g} s), gain {basis['mean_gain']:.4g} kg a cycle "
           f"(standard deviation {basis['sd_gain']:.4g} kg)")
     if basis["cycles_beyond_distribution"] > 0.2:
         print(f"{100 * basis['cycles_beyond_distribution']:.0f} % of the cycles are longer than what was seen: their "
               "spread is a guess; a longer run would tell")
-    print("time [s]  coating of a particle [kg]        coefficient of variation")
+    print("time [s]  coating of a particle [kg]  coefficient of variation: by cycles  by growth")
     for p in predictions:
-        print(f"{p['time']:8g}  {p['coating_mean']:.4g} +- {p['coating_mean_error']:.2g}        "
-              f"{p['coating_cov']:.4f} +- {p['coating_cov_error']:.2g}")
+        print(f"{p['time']:8g}  {p['coating_mean']:.4g} +- {p['coating_mean_error']:.2g}"
+              f"{p['coating_cov']:25.4f} +- {p['coating_cov_error']:.2g}"
+              f"{p['coating_cov_growth']:12.4f} +- {p['coating_cov_growth_error']:.2g}")
     if arguments.json:
         arguments.json.write_text(json.dumps({"basis": basis, "predictions": predictions}, indent=1) + "\n")
 
