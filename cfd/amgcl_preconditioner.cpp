@@ -30,12 +30,13 @@ class AmgclPreconditioner final : public PressurePreconditioner {
     fresh_iterations_ = -1;
   }
 
-  void apply(const HostArray<Real>& r, const HostArray<Real>& z, Real /*size*/) override {
+  Real apply(const HostArray<Real>& r, const HostArray<Real>& z, Real /*size*/) override {
     const auto n = static_cast<Index>(r_.size());
     for_entries("cfd::amgcl::to_float", n,
                 [&](Index c) { r_[static_cast<std::size_t>(c)] = static_cast<float>(r(c)); });
     hierarchy_->apply(r_, z_);
     for_entries("cfd::amgcl::from_float", n, [&](Index c) { z(c) = z_[static_cast<std::size_t>(c)]; });
+    return sum_("cfd::amgcl::dot_rz", n, [&](Index c) { return r(c) * z(c); });
   }
 
   // A hierarchy serves until it needs half as many iterations again as when it was new. Loose solves do not count.
@@ -90,6 +91,7 @@ class AmgclPreconditioner final : public PressurePreconditioner {
 
   std::unique_ptr<Hierarchy> hierarchy_;
   std::vector<float> r_, z_;
+  FixedSum sum_;
   Real scale_ = 1;
   int fresh_iterations_ = -1;
   bool stale_ = false;

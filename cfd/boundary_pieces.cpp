@@ -360,6 +360,23 @@ void set_boundary_values(Boundaries& result, const FlowGeometry& geometry) {
   }
 }
 
+void find_groups(Boundaries& result) {
+  const std::vector<BoundaryPiece>& pieces = result.pieces;
+  PieceGroups& groups = result.groups;
+  for (std::size_t b = 0; b < pieces.size(); ++b) {
+    groups.pieces.push_back(static_cast<Index>(b));
+    if (pieces[b].kind == PieceKind::inlet || pieces[b].kind == PieceKind::outlet)
+      result.passable.push_back(b);
+  }
+  const auto cell_of = [&](Index b) { return pieces[static_cast<std::size_t>(b)].cell; };
+  std::stable_sort(groups.pieces.begin(), groups.pieces.end(),
+                   [&](Index b, Index c) { return cell_of(b) < cell_of(c); });
+  for (std::size_t i = 1; i <= pieces.size(); ++i) {
+    if (i < pieces.size() && cell_of(groups.pieces[i]) == cell_of(groups.pieces[i - 1])) continue;
+    groups.begin.push_back(static_cast<Index>(i));
+  }
+}
+
 }  // namespace
 
 Boundaries cut_boundaries(const FlowGeometry& geometry, const std::vector<BoundaryPatch>& patches) {
@@ -385,6 +402,7 @@ Boundaries cut_boundaries(const FlowGeometry& geometry, const std::vector<Bounda
   }
   set_inlet_velocities(result, patches, geometry.is_cut, region_areas);
   set_boundary_values(result, geometry);
+  find_groups(result);
   return result;
 }
 

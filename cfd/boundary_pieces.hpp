@@ -48,8 +48,28 @@ struct BoundaryValue {
   Vec3 free;
 };
 
+/// The pieces at each cell: those of group g are `pieces` from `begin[g]` to before `begin[g + 1]`, in order.
+struct PieceGroups {
+  std::vector<Index> begin{0};
+  std::vector<Index> pieces;
+
+  /// Calls f(piece) for all pieces; those of one cell, and so of one face, one after the other on one thread.
+  template <class F>
+  void for_each(const char* label, F&& f) const {
+    for_entries(label, static_cast<Index>(begin.size()) - 1, [&](const Index g) {
+      const auto group = static_cast<std::size_t>(g);
+      for (auto i = static_cast<std::size_t>(begin[group]); i < static_cast<std::size_t>(begin[group + 1]);
+           ++i) {
+        f(static_cast<std::size_t>(pieces[i]));
+      }
+    });
+  }
+};
+
 struct Boundaries {
   std::vector<BoundaryPiece> pieces;  ///< side by side, in the order of faces
+  PieceGroups groups;
+  std::vector<std::size_t> passable;  ///< pieces that are inlets or outlets
   /// Per side (min, max of each axis) and place on its plane; empty for periodic sides.
   std::array<std::vector<BoundaryValue>, 6> values;
   std::vector<std::string> patch_names;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <type_traits>
 
 namespace pellicle::cfd {
 
@@ -46,7 +47,7 @@ void FaceBalance::prepare(const GasFields& fields) {
 }
 
 void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
-                          const HostArray<Real>& relaxation, Real dt, PressureMatrix& matrix) {
+                          const Inertia& inertia, Real dt, PressureMatrix& matrix) {
   const char* labels[] = {"cfd::face_balance::predict_x", "cfd::face_balance::predict_y",
                           "cfd::face_balance::predict_z"};
   const Index cells = fields.cells;
@@ -55,55 +56,63 @@ void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, c
   const Real* volume = geometry_.volume.data();
   const Real per_density = 1 / options_.density;
   const Real per_dt = 1 / dt;
+  const Real* held = inertia.all.data();
+  const Real keep = inertia.keep;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const AxisMetrics& metrics = geometry_.axis[a];
     const Real* own = &momentum.own()(axis * cells);
     const Real* in = &influx(axis * cells);
-    const Real* relax = &relaxation(axis * cells);
     const Real* normal_value = momentum.convection().normal_value[a].data();
     Real* velocity = fields.superficial[a].data();
     const Real* velocity_old = fields.superficial_old[a].data();
-    for_faces(
-        labels[a], geometry_.stencil, axis,
-        [&](Index f, Index m, Index p, Index position, Index) {
-          const auto at = static_cast<std::size_t>(position);
-          const Real wm = metrics.linear_minus[at];
-          const Real wp = 1 - wm;
-          const Real distance = metrics.distance[at];
-          const Real eps_f = void_fraction_[a](f);
-          const Real scale_m = wm / (volume[m] * eps[m]);
-          const Real scale_p = wp / (volume[p] * eps[p]);
-          const Real transport = scale_m * own[m] + scale_p * own[p];
-          const Real relaxed = scale_m * relax[m] + scale_p * relax[p];
-          const Real inflow = scale_m * eps[m] * in[m] + scale_p * eps[p] * in[p];
-          const Real rho = fields.face_density[a](f);
-          const Real rho_old = fields.face_density_old[a](f);
-          const Real transient = rho_old * void_fraction_old_[a](f) * per_dt / eps_f;
-          // The convective pressure step: implicit where it slows the face down, explicit where it speeds it up.
-          const Real kinetic = 0.5 * rho * normal_value[f] * kinetic_[a](f) * eps_f / distance;
-          const Real braking = std::max(kinetic, Real{0});
-          const Real speeding = std::max(-kinetic, Real{0});
-          const Real stiffness = transient + eps_f * resistance_[a](f) + relaxed + braking;
-          const Real pull = inflow + rho_old * velocity_old[f] * per_dt + (relaxed + speeding) * velocity[f] +
-                            eps_f * ((pressure[m] - pressure[p]) / distance + force_[a](f));
-          velocity[f] = pull / (stiffness + transport);
-          mobility_[a](f) = eps_f / (stiffness * distance);
-          matrix.coefficient[a](f) = geometry_.area[a](f) * mobility_[a](f) * (rho * per_density);
-        },
-        [&](Index face, Index cell) {
-          const Index nx = geometry_.stencil.n.x;
-          for (const FaceField* field : std::initializer_list<const FaceField*>{
-                   &void_fraction_, &void_fraction_old_, &fields.face_density, &fields.face_density_old,
-                   &kinetic_, &resistance_, &force_, &mobility_, &geometry_.area}) {
-            prefetch_row((*field)[a].data() + face, nx);
-          }
-          for (const Real* field : {normal_value, static_cast<const Real*>(velocity), velocity_old,
-                                    static_cast<const Real*>(matrix.coefficient[a].data())}) {
-            prefetch_row(field + face, nx);
-          }
-          for (const Real* field : {volume, eps, own, relax, in, pressure}) prefetch_row(field + cell, nx);
-        });
+    const auto predict_along = [&](auto relaxes) {
+      for_faces(
+          labels[a], geometry_.stencil, axis,
+          [&](Index f, Index m, Index p, Index position, Index) {
+            const auto at = static_cast<std::size_t>(position);
+            const Real wm = metrics.linear_minus[at];
+            const Real wp = 1 - wm;
+            const Real distance = metrics.distance[at];
+            const Real eps_f = void_fraction_[a](f);
+            const Real scale_m = wm / (volume[m] * eps[m]);
+            const Real scale_p = wp / (volume[p] * eps[p]);
+            const Real transport = scale_m * own[m] + scale_p * own[p];
+            Real relaxed = 0;
+            if constexpr (relaxes) {
+              relaxed = keep * (scale_m * (own[m] + held[m]) + scale_p * (own[p] + held[p]));
+            }
+            const Real inflow = scale_m * eps[m] * in[m] + scale_p * eps[p] * in[p];
+            const Real rho = fields.face_density[a](f);
+            const Real rho_old = fields.face_density_old[a](f);
+            const Real transient = rho_old * void_fraction_old_[a](f) * per_dt / eps_f;
+            // The convective pressure step: implicit where it slows the face down, explicit where it speeds it up.
+            const Real kinetic = 0.5 * rho * normal_value[f] * kinetic_[a](f) * eps_f / distance;
+            const Real braking = std::max(kinetic, Real{0});
+            const Real speeding = std::max(-kinetic, Real{0});
+            const Real stiffness = transient + eps_f * resistance_[a](f) + relaxed + braking;
+            const Real pull = inflow + rho_old * velocity_old[f] * per_dt +
+                              (relaxed + speeding) * velocity[f] +
+                              eps_f * ((pressure[m] - pressure[p]) / distance + force_[a](f));
+            velocity[f] = pull / (stiffness + transport);
+            mobility_[a](f) = eps_f / (stiffness * distance);
+            matrix.coefficient[a](f) = geometry_.area[a](f) * mobility_[a](f) * (rho * per_density);
+          },
+          [&](Index face, Index cell) {
+            const Index nx = geometry_.stencil.n.x;
+            for (const FaceField* field : std::initializer_list<const FaceField*>{
+                     &void_fraction_, &void_fraction_old_, &fields.face_density, &fields.face_density_old,
+                     &kinetic_, &resistance_, &force_, &mobility_, &geometry_.area}) {
+              prefetch_row((*field)[a].data() + face, nx);
+            }
+            for (const Real* field : {normal_value, static_cast<const Real*>(velocity), velocity_old,
+                                      static_cast<const Real*>(matrix.coefficient[a].data())}) {
+              prefetch_row(field + face, nx);
+            }
+            for (const Real* field : {volume, eps, own, in, pressure}) prefetch_row(field + cell, nx);
+          });
+    };
+    keep > 0 ? predict_along(std::true_type{}) : predict_along(std::false_type{});
     copy_periodic_faces(geometry_.stencil, axis, fields.superficial[a]);
     copy_periodic_faces(geometry_.stencil, axis, mobility_[a]);
     copy_periodic_faces(geometry_.stencil, axis, matrix.coefficient[a]);
@@ -111,7 +120,7 @@ void FaceBalance::predict(GasFields& fields, const MomentumEquation& momentum, c
   clear_closed_faces(fields.superficial);
   clear_closed_faces(mobility_);
   clear_closed_faces(matrix.coefficient);
-  predict_outlets(fields, momentum, influx, relaxation, dt, matrix);
+  predict_outlets(fields, momentum, influx, inertia, dt, matrix);
   set_boundary_velocities(geometry_, boundaries_, fields);
   matrix.finish();
 }
@@ -148,10 +157,13 @@ Real normal_part(const BoundaryPiece& piece, const HostArray<Real>& coefficient,
 }  // namespace
 
 void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& momentum,
-                                  const HostArray<Real>& influx, const HostArray<Real>& relaxation, Real dt,
+                                  const HostArray<Real>& influx, const Inertia& inertia, Real dt,
                                   PressureMatrix& matrix) {
-  for (std::size_t a = 0; a < 3; ++a) Kokkos::deep_copy(matrix.boundary[a], 0.0);
-  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+  for (const std::size_t b : boundaries_.passable) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    matrix.boundary[static_cast<std::size_t>(piece.axis)](piece.cell) = 0;
+  }
+  for (const std::size_t b : boundaries_.passable) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
     if (piece.kind != PieceKind::outlet) continue;
     const Index c = piece.cell;
@@ -159,7 +171,7 @@ void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& mom
     const Real volume = geometry_.volume(c);
     const Real speed = fields.piece_flow[b] / piece.area;
     const Real transport = normal_part(piece, momentum.own(), fields.cells) / (volume * eps);
-    const Real relaxed = normal_part(piece, relaxation, fields.cells) / (volume * eps);
+    const Real relaxed = inertia.keep * (transport + inertia.all(c) / (volume * eps));
     const Real rho = fields.piece_density[b];
     const Real rho_old = fields.density_old(c);
     const Real braking = 0.5 * rho * std::max(-speed, Real{0}) / (eps * piece.half_width);
@@ -179,11 +191,12 @@ void FaceBalance::predict_outlets(GasFields& fields, const MomentumEquation& mom
 
 void set_boundary_velocities(const FlowGeometry& geometry, const Boundaries& boundaries,
                              const GasFields& fields) {
-  for (const BoundaryPiece& piece : boundaries.pieces) {
-    if (piece.is_immersed()) continue;
-    fields.superficial[static_cast<std::size_t>(piece.axis)](piece.face) = 0;
+  // Nothing ever passes through the others' faces.
+  for (const std::size_t b : boundaries.passable) {
+    const BoundaryPiece& piece = boundaries.pieces[b];
+    if (!piece.is_immersed()) fields.superficial[static_cast<std::size_t>(piece.axis)](piece.face) = 0;
   }
-  for (std::size_t b = 0; b < boundaries.pieces.size(); ++b) {
+  for (const std::size_t b : boundaries.passable) {
     const BoundaryPiece& piece = boundaries.pieces[b];
     if (piece.is_immersed()) continue;
     const auto a = static_cast<std::size_t>(piece.axis);
@@ -199,11 +212,11 @@ void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) 
   const Stencil& s = geometry_.stencil;
   const Real* change = correction.data();
   // The change of each face's velocity goes where its inertial force will be computed anew.
-  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+  boundaries_.groups.for_each("cfd::face_balance::clear_boundary", [&](std::size_t b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
     if (!piece.is_immersed()) inertial_[static_cast<std::size_t>(piece.axis)](piece.face) = 0;
-  }
-  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+  });
+  for (const std::size_t b : boundaries_.passable) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
     if (piece.kind != PieceKind::outlet) continue;
     const auto a = static_cast<std::size_t>(piece.axis);
@@ -218,8 +231,10 @@ void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) 
       const Real delta = mobility_[a](f) * (change[m] - change[p]);
       inertial_[a](f) = delta;
       fields.superficial[a](f) += delta;
+      fields.mass_flux[a](f) = fields.face_density[a](f) * geometry_.area[a](f) * fields.superficial[a](f);
     });
     copy_periodic_faces(s, axis, fields.superficial[a]);
+    copy_periodic_faces(s, axis, fields.mass_flux[a]);
     copy_periodic_faces(s, axis, inertial_[a]);
     const Index step = s.face_step(axis);
     for_rows(cell_labels[a], s, [&](const Index r) {
@@ -240,22 +255,23 @@ void FaceBalance::correct(GasFields& fields, const HostArray<Real>& correction) 
 // without shear: none, since they mirror the flow and the normal velocity is odd across them.
 void FaceBalance::set_boundary_inertia(const GasFields& fields) {
   const Stencil& s = geometry_.stencil;
-  for (const BoundaryPiece& piece : boundaries_.pieces) {
-    if (piece.is_immersed()) continue;
-    const auto a = static_cast<std::size_t>(piece.axis);
+  const auto behind = [&](const BoundaryPiece& piece) {
     const Index other = piece.face - static_cast<Index>(piece.outward) * s.face_step(piece.axis);
-    inertial_[a](piece.face) = s.n[piece.axis] > 1 ? inertial_[a](other) : 0;
-  }
-  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+    return s.n[piece.axis] > 1 ? inertial_[static_cast<std::size_t>(piece.axis)](other) : 0;
+  };
+  boundaries_.groups.for_each("cfd::face_balance::boundary_inertia", [&](std::size_t b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    if (piece.is_immersed() || (piece.kind != PieceKind::outlet && piece.kind != PieceKind::slip)) continue;
+    if (!piece.is_immersed()) inertial_[static_cast<std::size_t>(piece.axis)](piece.face) = behind(piece);
+  });
+  boundaries_.groups.for_each("cfd::face_balance::free_boundary_inertia", [&](std::size_t b) {
+    const BoundaryPiece& piece = boundaries_.pieces[b];
+    if (piece.is_immersed() || (piece.kind != PieceKind::outlet && piece.kind != PieceKind::slip)) return;
     const auto a = static_cast<std::size_t>(piece.axis);
     const Real share = piece.area / geometry_.area[a](piece.face);
-    const Index other = piece.face - static_cast<Index>(piece.outward) * s.face_step(piece.axis);
-    const Real base = s.n[piece.axis] > 1 ? inertial_[a](other) : 0;
+    const Real base = behind(piece);
     if (piece.kind == PieceKind::slip) {
       inertial_[a](piece.face) -= share * base;
-      continue;
+      return;
     }
     const Index c = piece.cell;
     const Real eps = fields.void_fraction(c);
@@ -264,7 +280,7 @@ void FaceBalance::set_boundary_inertia(const GasFields& fields) {
                          piece.outward * fields.force(c + piece.axis * fields.cells) -
                          fields.exchange_coefficient(c) / eps * fields.piece_flow[b] / piece.area;
     inertial_[a](piece.face) += share * (piece.outward * outward - base);
-  }
+  });
 }
 
 void FaceBalance::compute_cell_force(const GasFields& fields, const MomentumEquation& momentum,

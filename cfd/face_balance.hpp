@@ -27,9 +27,9 @@ class FaceBalance {
   /// Once a step: void fraction, resistance and force of the faces.
   void prepare(const GasFields& fields);
   /// Face velocities that the momentum balance gives with the pressure at hand, and the coefficients of the pressure
-  /// correction. `relaxation` [kg/s] per cell and component.
+  /// correction.
   void predict(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
-               const HostArray<Real>& relaxation, Real dt, PressureMatrix& matrix);
+               const Inertia& inertia, Real dt, PressureMatrix& matrix);
   /// Changes pressure and face velocities by a pressure correction, and the cell velocities by the mean change of
   /// their faces.
   void correct(GasFields& fields, const HostArray<Real>& correction);
@@ -49,7 +49,7 @@ class FaceBalance {
   void clear_closed_faces(const FaceField& field) const;
   void block_cell_force(const GasFields& fields, const HostArray<Real>& force) const;
   void predict_outlets(GasFields& fields, const MomentumEquation& momentum, const HostArray<Real>& influx,
-                       const HostArray<Real>& relaxation, Real dt, PressureMatrix& matrix);
+                       const Inertia& inertia, Real dt, PressureMatrix& matrix);
   void set_boundary_inertia(const GasFields& fields);
   Real outlet_pressure(const GasFields& fields, std::size_t b) const;
   Real side_gradient(const GasFields& fields, Index cell, int axis, Index face) const;

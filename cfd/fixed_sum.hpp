@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "cfd/stencil.hpp"
@@ -25,12 +27,51 @@ class FixedSum {
     return sum;
   }
 
+  /// Several sums in one go through memory: block(begin, end, sums) adds what a block of entries has.
+  template <std::size_t n, class Block>
+  std::array<Real, n> several(const char* label, Index count, Block&& block) {
+    std::array<Real, n> total{};
+    parts_.resize(n * static_cast<std::size_t>((count + block_size - 1) / block_size));
+    by_blocks(label, count, [&](Index begin, Index end) {
+      std::array<Real, n> sums{};
+      block(begin, end, sums);
+      std::copy(sums.begin(), sums.end(), parts_.begin() + begin / block_size * static_cast<Index>(n));
+      return Real{0};
+    });
+    for (std::size_t i = 0; i < parts_.size(); ++i) total[i % n] += parts_[i];
+    return total;
+  }
+
   /// Largest of term(entry) >= 0; a term that is no number counts as 0.
   template <class Term>
   Real largest(const char* label, Index count, Term&& term) {
     if (count <= block_size) return largest_of_block(0, count, term);
     by_blocks(label, count, [&](Index begin, Index end) { return largest_of_block(begin, end, term); });
     return *std::max_element(partial_.begin(), partial_.end());
+  }
+
+  /// Likewise of two terms.
+  template <class Terms>
+  std::array<Real, 2> largest_two(const char* label, Index count, Terms&& terms) {
+    parts_.resize(2 * static_cast<std::size_t>((count + block_size - 1) / block_size));
+    by_blocks(label, count, [&](Index begin, Index end) {
+      const std::decay_t<Terms> own = terms;
+      Real first = 0;
+      Real second = 0;
+#pragma omp simd reduction(max : first, second)
+      for (Index e = begin; e < end; ++e) {
+        const std::array<Real, 2> values = own(e);
+        first = values[0] > first ? values[0] : first;
+        second = values[1] > second ? values[1] : second;
+      }
+      const auto at = static_cast<std::size_t>(begin / block_size * 2);
+      parts_[at] = first;
+      parts_[at + 1] = second;
+      return Real{0};
+    });
+    std::array<Real, 2> result{};
+    for (std::size_t i = 0; i < parts_.size(); ++i) result[i % 2] = std::max(result[i % 2], parts_[i]);
+    return result;
   }
 
  private:
@@ -48,12 +89,14 @@ class FixedSum {
     }
   }
 
+  // A copy of the term: what a loop reads through a reference it reads anew for every entry.
   template <class Term>
-  static Real largest_of_block(Index begin, Index end, Term& term) {
+  static Real largest_of_block(Index begin, Index end, const Term& term) {
+    const Term own = term;
     Real largest = 0;
 #pragma omp simd reduction(max : largest)
     for (Index e = begin; e < end; ++e) {
-      const Real value = term(e);
+      const Real value = own(e);
       largest = value > largest ? value : largest;
     }
     return largest;
@@ -74,7 +117,7 @@ class FixedSum {
     return (s0 + s1) + (s2 + s3);
   }
 
-  std::vector<Real> partial_;
+  std::vector<Real> partial_, parts_;
 };
 
 }  // namespace pellicle::cfd

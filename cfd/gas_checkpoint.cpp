@@ -84,6 +84,7 @@ void GasSolver::load(core::CheckpointReader& reader) {
   for_totals(s.balance, [&](const char* name, Vec3& total) { total = reader.read_vec3(name); });
   s.update_stocks();
   s.pressure_solver.drop();
+  s.still_steps = 0;
 }
 
 }  // namespace pellicle::cfd

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cfd/gas_solver_impl.hpp"
@@ -14,11 +15,12 @@ Real GasSolver::Impl::face_velocity_change() {
   Real fastest = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const Real *now = fields.superficial[a].data(), *old = before[a].data();
-    const auto count = static_cast<Index>(before[a].extent(0));
-    change = std::max(change, sum.largest("cfd::gas_solver::face_change", count,
-                                          [=](Index f) { return std::abs(now[f] - old[f]); }));
-    fastest = std::max(fastest, sum.largest("cfd::gas_solver::face_speed", count,
-                                            [=](Index f) { return std::abs(now[f]); }));
+    const auto [changed, fast] = sum.largest_two(
+        "cfd::gas_solver::face_change", static_cast<Index>(before[a].extent(0)), [=](Index f) {
+          return std::array{std::abs(now[f] - old[f]), std::abs(now[f])};
+        });
+    change = std::max(change, changed);
+    fastest = std::max(fastest, fast);
   }
   return fastest > 0 ? change / fastest : 0;
 }
@@ -82,12 +84,12 @@ Real GasSolver::Impl::check_and_find_courant(Real dt) {
     const Real per_z = 1 / geometry.axis[2].width[static_cast<std::size_t>(row.k)];
     Real largest = 0;
     Real numbers = 0;  // stays 0 as long as all are finite
+    const Real *ux = u + row.cell, *uy = ux + n, *uz = uy + n, *pressure = p + row.cell, *per_x = per_width;
+    const Index nx = s.n.x;
 #pragma omp simd reduction(max : largest) reduction(+ : numbers)
-    for (Index i = 0; i < s.n.x; ++i) {
-      const Index c = row.cell + i;
-      const Real own =
-          std::abs(u[c]) * per_width[i] + std::abs(u[c + n]) * per_y + std::abs(u[c + 2 * n]) * per_z;
-      numbers += 0 * (own + p[c]);
+    for (Index i = 0; i < nx; ++i) {
+      const Real own = std::abs(ux[i]) * per_x[i] + std::abs(uy[i]) * per_y + std::abs(uz[i]) * per_z;
+      numbers += 0 * (own + pressure[i]);
       largest = own > largest ? own : largest;
     }
     row_courant[static_cast<std::size_t>(r)] = numbers == 0 ? dt * largest : numbers;

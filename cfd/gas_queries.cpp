@@ -126,6 +126,9 @@ Real GasSolver::plane_pressure(int axis, Real coordinate) const {
   return (1 - w) * mean(i) + w * mean(other);
 }
 
-void GasSolver::drop_solver_hierarchies() { impl_->pressure_solver.drop(); }
+void GasSolver::drop_solver_hierarchies() {
+  impl_->pressure_solver.drop();
+  impl_->still_steps = 0;
+}
 
 }  // namespace pellicle::cfd

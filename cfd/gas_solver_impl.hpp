@@ -1,6 +1,7 @@
 // Inside of GasSolver; only its own files include this.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,13 +26,14 @@ struct GasSolver::Impl {
 
   void initialise(const HostArray<Real>& void_fraction);
   void check_exchange(const ParticleExchange& exchange);
+  bool stays_as_it_is(const ParticleExchange& exchange);
   void take_exchange(const ParticleExchange& exchange, Real dt);
-  void assemble_momentum(Real dt);
+  void prepare_inertia(Real dt);
   Real compute_continuity_residual(Real dt);
   Real growth_of_gas(Real eps, Real eps_old, Real rho, Real rho_old, Real dt) const;
-  Real gas_throughput(Real dt);
+  Real gas_throughput() const;
   void solve_pressure(Real dt, bool tightly, StepReport& report);
-  void solve_momentum(Real dt, Real tolerance, StepReport& report);
+  void solve_momentum(Real tolerance, StepReport& report);
   void update_mass_flux();
   Real face_velocity_change();
   void take_mass_source(const ParticleExchange& exchange, Real dt);
@@ -60,10 +62,15 @@ struct GasSolver::Impl {
   GasScalars scalars;
   std::optional<KEpsilon> turbulence;
 
-  HostArray<Real> influx, inertia, relaxation, cell_force, rhs, correction;
+  HostArray<Real> influx, cell_force, rhs, correction;
+  Inertia inertia;
   FaceField before;                 ///< face velocities at the start of an outer iteration
   std::vector<Real> inverse_width;  ///< of cells along x [1/m]
   std::vector<Real> row_courant;    ///< largest of each row of cells
+  std::vector<std::array<Real, 3>>
+      row_through;      ///< volume flow through the faces of each row, all counted up [m3/s]
+  int still_steps = 0;  ///< in a row, up to the one at hand, in which gas and void fraction did not change
+  Real displaced = 0;   ///< by the growth of the gas in a step [m3/s]
   FixedSum sum;
 };
 

@@ -91,6 +91,7 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
   coloured_ =
       !(s.periodic[1] && s.n.y % 2 == 1 && s.n.y > 1) && !(s.periodic[2] && s.n.z % 2 == 1 && s.n.z > 1);
   row_change_.assign(static_cast<std::size_t>(s.rows()), 0);
+  row_begun_.assign(static_cast<std::size_t>(s.rows()), {});
 }
 
 void MomentumEquation::prepare(const GasFields& fields, Real dt) {
@@ -114,15 +115,15 @@ void MomentumEquation::prepare(const GasFields& fields, Real dt) {
     copy_periodic_faces(geometry_.stencil, axis, tangential_conductance_[a]);
   }
   // Where nothing slips nothing changes along the boundary, and continuity alone gives the normal gradient of eps u.
-  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+  boundaries_.groups.for_each("cfd::momentum::wall_stress", [&](std::size_t b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
-    if (piece.is_immersed() || (piece.kind != PieceKind::no_slip && piece.kind != PieceKind::inlet)) continue;
+    if (piece.is_immersed() || (piece.kind != PieceKind::no_slip && piece.kind != PieceKind::inlet)) return;
     const Index c = piece.cell;
     const Real thinning = fields.density_old(c) / fields.density(c);
     const Real growth = (fields.void_fraction(c) - thinning * fields.void_fraction_old(c)) / dt -
                         fields.mass_source(c) / fields.density(c);
     wall_stress_[b] = -piece.outward * fields.molecular_viscosity(c) * piece.area * growth;
-  }
+  });
 }
 
 void MomentumEquation::assemble(const GasFields& fields) {
@@ -248,7 +249,7 @@ PieceTerms piece_terms(const GasFields& fields, const BoundaryPiece& piece, std:
 
 void MomentumEquation::add_boundaries(const GasFields& fields) {
   const Index n = fields.cells;
-  for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
+  boundaries_.groups.for_each("cfd::momentum::boundaries", [&](std::size_t b) {
     const BoundaryPiece& piece = boundaries_.pieces[b];
     const PieceTerms terms = piece_terms(fields, piece, b);
     if (piece.is_immersed()) {
@@ -256,7 +257,7 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
         own_(piece.cell + a * n) += terms.inflow;
         source_(piece.cell + a * n) += terms.inflow * terms.brought[a];
       }
-      continue;
+      return;
     }
     for (int a = 0; a < 3; ++a) {
       const Index c = piece.cell + a * n;
@@ -271,7 +272,7 @@ void MomentumEquation::add_boundaries(const GasFields& fields) {
     const auto beyond = side_number(piece.axis, piece.outward);
     own_(piece.cell + piece.axis * n) += terms.mirror;
     normal_[beyond](piece.cell) -= terms.mirror;
-  }
+  });
   add_surfaces(fields);
   add_skew_stress(fields);
   if (fields.velocity_gradient.extent(0) > 0) {

@@ -13,6 +13,15 @@
 
 namespace pellicle::cfd {
 
+/// What the change in time, drag and relaxation add to a cell's equation, the same for all three components:
+/// keep (own + inertia) is added to the diagonal for relaxation, and times the velocity at hand to the right-hand side.
+struct Inertia {
+  HostArray<Real> all;  ///< on the diagonal: of time and drag [kg/s]
+  HostArray<Real>
+      old;        ///< mass of the gas at the start of the step per time: times its velocity a force [kg/s]
+  Real keep = 0;  ///< 1 / relaxation factor - 1
+};
+
 /// Per cell and component: (own + inertia) u = sum of near u_N + source + forces, where own and near hold convection
 /// (upwind; the rest of the scheme is in source) and viscous stress. The equation is the momentum balance less
 /// u times continuity (Patankar 1980), so own is the sum of near but for boundaries.
@@ -26,9 +35,8 @@ class MomentumEquation {
   void assemble(const GasFields& fields);
   /// 3 cells: sum of near u_N + source [N], from the velocities at hand.
   void compute_influx(const GasFields& fields, const HostArray<Real>& influx) const;
-  /// Solves for the velocity in `fields`. `inertia` [kg/s], 3 cells, is added to the diagonal, `force` [N], 3 cells,
-  /// to the right-hand side.
-  TransportReport solve(const GasFields& fields, const HostArray<Real>& inertia, const HostArray<Real>& force,
+  /// Solves for the velocity in `fields`, with what `inertia` adds to the equation and the `force` [N], 3 cells.
+  TransportReport solve(const GasFields& fields, const Inertia& inertia, const HostArray<Real>& force,
                         Real tolerance);
 
   /// Coefficients of u itself, 3 cells [kg/s].
@@ -55,8 +63,14 @@ class MomentumEquation {
   };
   template <class T, class Term>
   T sum_along_row(const Row& row, Term&& term) const;
+  struct Begun {
+    Real defect = 0, right_side = 0;  ///< roots of sums of squares
+    Real rate = 0;                    ///< what a sweep leaves, about
+  };
+  template <bool keeps>
+  Begun begin(const GasFields& fields, const Inertia& inertia, const Real* force, Real factor);
   Real compute_defect(const Real* u, Real factor);
-  void pack();
+  void pack(const Row& row) const;
   Real sweep(const float* d, float* next);
   Correction solve_correction(Real defect, Real target, int& sweeps);
 
@@ -76,9 +90,11 @@ class MomentumEquation {
   // Of sweeps: row by row of cells, in it value by value or component by component.
   HostArray<float> packed_, defect_;
   std::array<HostArray<float>, 2> trial_;
-  std::vector<Real> row_change_;  ///< sum of squares
-  bool coloured_ = true;          ///< rows can be coloured like a chess board
-  bool open_ends_ = true;         ///< no coefficient at the ends of rows
+  std::vector<Real> row_change_;                ///< sum of squares
+  std::vector<std::array<Real, 2>> row_begun_;  ///< sum of squares of the right-hand side, largest rate
+  bool swept_roughly_ = false;  ///< one sweep did not do in the last rough solve: only saves time
+  bool coloured_ = true;        ///< rows can be coloured like a chess board
+  bool open_ends_ = true;       ///< no coefficient at the ends of rows
   BiCGStab linear_solver_;
   FixedSum sum_;
 };

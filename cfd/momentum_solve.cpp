@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <vector>
 
 #include "cfd/momentum.hpp"
 
@@ -17,6 +19,7 @@ constexpr Real rough = 1e-5;             // a tolerance that single precision su
 constexpr Real sharper = 0.3;         // a correction is solved for by so much more closely than is asked for
 constexpr Real least_progress = 0.1;  // of a correction
 constexpr int packed_values = 15;     // a cell: near, normal, inverse
+constexpr Real large_start = 1e6;     // right-hand side over solution
 
 }  // namespace
 
@@ -59,13 +62,14 @@ template <class T, class Term>
 T MomentumEquation::sum_along_row(const Row& row, Term&& term) const {
   const Stencil& s = geometry_.stencil;
   const Index nx = s.n.x;
+  const std::decay_t<Term> own = term;  // not read anew for every cell
   T sum = 0;
   if (open_ends_ && row.cell > 0 && row.cell + nx < s.cells()) {
 #pragma omp simd reduction(+ : sum)
-    for (Index i = 0; i < nx; ++i) sum += term(i, i - 1, i + 1);
+    for (Index i = 0; i < nx; ++i) sum += own(i, i - 1, i + 1);
     return sum;
   }
-  along_row(row, nx, [&](Index i, Index left, Index right) { sum += term(i, left, right); });
+  along_row(row, nx, [&](Index i, Index left, Index right) { sum += own(i, left, right); });
   return sum;
 }
 
@@ -124,26 +128,92 @@ Real MomentumEquation::compute_defect(const Real* u, Real factor) {
 }
 
 // Coefficients in single precision, all of a row of cells together.
-void MomentumEquation::pack() {
+void MomentumEquation::pack(const Row& row) const {
+  const Index n = geometry_.stencil.cells();
+  const Index nx = geometry_.stencil.n.x;
+  float* out = packed_.data() + packed_values * row.cell;
+  const auto put = [&](const Real* from) {
+#pragma GCC ivdep
+    for (Index i = 0; i < nx; ++i) out[i] = static_cast<float>(from[i]);
+    out += nx;
+  };
+  for (std::size_t d = 0; d < 6; ++d) put(near_[d].data() + row.cell);
+  for (std::size_t d = 0; d < 6; ++d) put(normal_[d].data() + row.cell);
+  for (int a = 0; a < 3; ++a) put(inverse_.data() + row.cell + a * n);
+}
+
+// What a solve begins with, in one go through memory: the equation divided by its diagonal, its defect as
+// `compute_defect` has it; if it keeps the equation, also the coefficients of sweeps.
+template <bool keeps>
+MomentumEquation::Begun MomentumEquation::begin(const GasFields& fields, const Inertia& inertia,
+                                                const Real* force, Real factor) {
   const Stencil& s = geometry_.stencil;
   const Index n = s.cells();
   const Index nx = s.n.x;
-  for_rows("cfd::momentum_solve::pack", s, [&](const Index r) {
-    const Index cell = r * nx;
-    for (std::size_t d = 0; d < 6; ++d) {
-      prefetch_row(near_[d].data() + cell + nx, nx);
-      prefetch_row(normal_[d].data() + cell + nx, nx);
+  const Real* u = fields.velocity.data();
+  const Real* u_old = fields.velocity_old.data();
+  const Real keep = inertia.keep;
+  for_rows("cfd::momentum_solve::begin", s, [&](const Index r) {
+    const Row row = s.row(r);
+    const Real *all = inertia.all.data() + row.cell, *old = inertia.old.data() + row.cell;
+    prefetch_row(all + nx, nx);
+    prefetch_row(old + nx, nx);
+    static thread_local std::vector<Real> scratch;
+    if (!keeps) scratch.resize(static_cast<std::size_t>(2 * nx));
+    Real defects = 0;
+    Real sizes = 0;
+    Real rate = 0;
+    for (int a = 0; a < 3; ++a) {
+      const Index first = row.cell + a * n;
+      const RowSum near(*this, row, a, u);
+      const Real *own = own_.data() + first, *source = source_.data() + first, *given = force + first;
+      const Real *now = u + first, *before = u_old + first;
+      for (const Real* field : {own, source, given, before}) prefetch_row(field + nx, nx);
+      Real *inverse = scratch.data(), *right_side = scratch.data() + nx;
+      if constexpr (keeps) {
+        inverse = inverse_.data() + first;
+        right_side = linear_solver_.right_side().data() + first;
+        prefetch_row(inverse + nx, nx);
+        prefetch_row(right_side + nx, nx);
+      }
+      const Real kept = keep;
+      Real size = 0;
+      Real largest = rate;
+#pragma omp simd reduction(+ : size) reduction(max : largest)
+      for (Index i = 0; i < nx; ++i) {
+        const Real diagonal = own[i] + all[i];
+        const Real held = kept * diagonal;
+        const Real inv = 1 / (diagonal + held);
+        const Real value = (source[i] + given[i] + old[i] * before[i] + held * now[i]) * inv;
+        const Real share = own[i] * inv;
+        inverse[i] = inv;
+        right_side[i] = value;
+        size += value * value;
+        largest = share > largest ? share : largest;
+      }
+      sizes += size;
+      rate = largest;
+      float* out = defect_.data() + (3 * r + a) * nx;
+      const Real *b = right_side, *inv = inverse;
+      defects += sum_along_row<Real>(row, [=](Index i, Index left, Index right) {
+        const Real defect = b[i] + near(i, left, right) * inv[i] - now[i];
+        out[i] = static_cast<float>(defect * factor);
+        return defect * defect;
+      });
     }
-    for (int a = 0; a < 3; ++a) prefetch_row(inverse_.data() + cell + nx + a * n, nx);
-    float* out = packed_.data() + packed_values * cell;
-    const auto put = [&](const Real* from) {
-      for (Index i = 0; i < nx; ++i) out[i] = static_cast<float>(from[i]);
-      out += nx;
-    };
-    for (std::size_t d = 0; d < 6; ++d) put(near_[d].data() + cell);
-    for (std::size_t d = 0; d < 6; ++d) put(normal_[d].data() + cell);
-    for (int a = 0; a < 3; ++a) put(inverse_.data() + cell + a * n);
+    if constexpr (keeps) pack(row);
+    row_change_[static_cast<std::size_t>(r)] = defects;
+    row_begun_[static_cast<std::size_t>(r)] = {sizes, rate};
   });
+  Begun begun;
+  for (const Real defects : row_change_) begun.defect += defects;
+  for (const auto& [sizes, rate] : row_begun_) {
+    begun.right_side += sizes;
+    begun.rate = std::max(begun.rate, rate);
+  }
+  begun.defect = std::sqrt(begun.defect);
+  begun.right_side = std::sqrt(begun.right_side);
+  return begun;
 }
 
 // One sweep from a correction to the next: rows of one colour, as on a chess board of rows, then those of the other with
@@ -213,58 +283,77 @@ MomentumEquation::Correction MomentumEquation::solve_correction(Real defect, Rea
   return result;
 }
 
-TransportReport MomentumEquation::solve(const GasFields& fields, const HostArray<Real>& inertia,
+TransportReport MomentumEquation::solve(const GasFields& fields, const Inertia& inertia,
                                         const HostArray<Real>& force, Real tolerance) {
   const Stencil& s = geometry_.stencil;
   const Index n = s.cells();
   const Index size = 3 * n;
-  Real* inverse = inverse_.data();
-  Real* right_side = linear_solver_.right_side().data();
-  const Real* own = own_.data();
-  const Real* source = source_.data();
-  const Real* given = force.data();
-  const Real* mass = inertia.data();
-  for_entries("cfd::momentum_solve::divide", size, [=](Index e) {
-    inverse[e] = 1 / (own[e] + mass[e]);
-    right_side[e] = (source[e] + given[e]) * inverse[e];
-  });
+  const Real* inverse = inverse_.data();
   Real* u = fields.velocity.data();
-  const auto norm_of = [&](const char* label, const Real* y) {
-    return std::sqrt(sum_(label, size, [y](Index e) { return y[e] * y[e]; }));
+  const Real solution =
+      std::sqrt(sum_("cfd::momentum_solve::norm_u", size, [u](Index e) { return u[e] * u[e]; }));
+  // A power of two brings corrections to where single precision has them.
+  const auto factor_for = [&](Real scale) {
+    return scale > 0 && std::isfinite(scale)
+               ? std::ldexp(1.0, -std::ilogb(scale / std::sqrt(static_cast<Real>(size))))
+               : 1.0;
   };
-  const Real scale =
-      std::max(norm_of("cfd::momentum_solve::norm_b", right_side), norm_of("cfd::momentum_solve::norm_u", u));
+  Real factor = factor_for(solution);
+  // Where little is asked for, one sweep may do, and single precision cannot have spoilt it.
+  const bool roughly = tolerance >= rough;
+  const auto begin_with = [&](bool keeps) {
+    return keeps ? begin<true>(fields, inertia, force.data(), factor)
+                 : begin<false>(fields, inertia, force.data(), factor);
+  };
+  bool kept = !roughly || swept_roughly_;
+  Begun begun = begin_with(kept);
+  const Real scale = std::max(begun.right_side, solution);
+  // A gas that starts from rest.
+  if (scale > large_start * solution) {
+    factor = factor_for(scale);
+    begun = begin_with(kept);
+  }
   const Real target = tolerance * scale;
   TransportReport report;
   if (scale == 0) return report;
-  // A power of two brings corrections to where single precision has them.
-  const Real factor = std::ldexp(1.0, -std::ilogb(scale / std::sqrt(static_cast<Real>(size))));
   const Real back = 1 / factor;
-  Real before = std::numeric_limits<Real>::infinity();
-  while (true) {
-    const Real defect = std::sqrt(compute_defect(u, factor));
-    report.residual = defect / scale;
-    report.converged = defect <= target;
-    if (report.converged || report.iterations >= options_.solver.max_linear_iterations) return report;
-    if (!(defect < least_progress * before)) break;
-    if (report.iterations == 0) pack();
-    before = defect;
-    const Correction found = solve_correction(defect * factor, sharper * target * factor, report.iterations);
-    const float* d = found.values;
+  const auto add = [&](const float* d) {
     for_rows("cfd::momentum_solve::add", s, [&](const Index r) {
       for (int a = 0; a < 3; ++a) {
         Real* out = u + r * s.n.x + a * n;
         const float* change = d + (3 * r + a) * s.n.x;
+#pragma GCC ivdep
         for (Index i = 0; i < s.n.x; ++i) out[i] += back * static_cast<Real>(change[i]);
       }
     });
+  };
+  Real before = std::numeric_limits<Real>::infinity();
+  Real defect = begun.defect;
+  while (true) {
+    report.residual = defect / scale;
+    report.converged = defect <= target;
+    if (report.converged || report.iterations >= options_.solver.max_linear_iterations) return report;
+    if (!(defect < least_progress * before)) break;
+    before = defect;
+    swept_roughly_ = roughly ? !(begun.rate * defect <= target) : swept_roughly_;
+    if (roughly && !swept_roughly_) {
+      add(defect_.data());
+      ++report.iterations;
+      report.residual = begun.rate * defect / scale;
+      report.converged = true;
+      return report;
+    }
+    if (!kept) begin_with(true);
+    kept = true;
+    const Correction found = solve_correction(defect * factor, sharper * target * factor, report.iterations);
+    add(found.values);
     if (!found.fast) break;
-    // Where little is asked for, single precision cannot have spoilt it.
-    if (tolerance >= rough) {
+    if (roughly) {
       report.residual = found.residual * back / scale;
       report.converged = found.residual <= target * factor;
       return report;
     }
+    defect = std::sqrt(compute_defect(u, factor));
   }
   const int done = report.iterations;
   report = linear_solver_.solve(

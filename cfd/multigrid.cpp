@@ -56,7 +56,7 @@ class Multigrid final : public PressurePreconditioner {
     singular_ = matrix.singular;
   }
 
-  void apply(const HostArray<Real>& r, const HostArray<Real>& z, Real size) override {
+  Real apply(const HostArray<Real>& r, const HostArray<Real>& z, Real size) override {
     // A power of two, so that it adds no error, brings the numbers to where single precision has them.
     const Real scale = size > 0 ? std::ldexp(1.0, -std::ilogb(size)) : 1;
     const MultigridLevel& top = levels_[0];
@@ -74,6 +74,7 @@ class Multigrid final : public PressurePreconditioner {
     });
     cycle(0);
     const Real back = 1 / scale;
+    row_sums_.resize(static_cast<std::size_t>(top.s.rows()));
     for_rows("cfd::multigrid::give", top.s, [&](const Index line) {
       const Row row = top.s.row(line);
       for (Index c = 0; c < 2; ++c) {
@@ -83,7 +84,16 @@ class Multigrid final : public PressurePreconditioner {
 #pragma GCC ivdep
         for (Index m = 0; m < half.count; ++m) to[2 * m] = back * static_cast<Real>(x[m]);
       }
+      const Real *given = in + row.cell, *found = out + row.cell;
+      const Index count = top.s.n.x;
+      Real product = 0;
+#pragma omp simd reduction(+ : product)
+      for (Index i = 0; i < count; ++i) product += given[i] * found[i];
+      row_sums_[static_cast<std::size_t>(line)] = product;
     });
+    Real product = 0;
+    for (const Real of_row : row_sums_) product += of_row;
+    return product;
   }
 
  private:
@@ -189,6 +199,7 @@ class Multigrid final : public PressurePreconditioner {
   std::vector<MultigridLevel> levels_;
   std::vector<Real> factor_;  ///< Cholesky factor of the coarsest matrix, lower triangle, row by row
   std::vector<Real> solution_;
+  std::vector<Real> row_sums_;
   bool built_ = false;
   bool singular_ = false;
 };

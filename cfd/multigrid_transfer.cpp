@@ -107,6 +107,7 @@ void MultigridLevel::restrict_to(MultigridLevel& coarse) const {
   for_lines("cfd::multigrid_transfer::restrict_to", sc, [&](Index jc, Index kc) {
     float* sum = coarse.line.data() + 1 + sc.cell(0, jc, kc);
     for (Index i = 0; i < sc.n.x; ++i) sum[i] = 0;
+    // What one or two rows of cells give to the aggregates beside which they lie.
     const auto add = [&](const SplitField& weight, Index j, Index k) {
       for (Index c = 0; c < colours; ++c) {
         const HalfRow row = half_row(c, j, k);
@@ -121,36 +122,63 @@ void MultigridLevel::restrict_to(MultigridLevel& coarse) const {
         }
       }
     };
+    const auto add_two = [&](const SplitField& weight, Index j1, Index k1, Index j2, Index k2) {
+      if (colours == 2 || !joined[0] || s.n.x % 2 == 1) {
+        add(weight, j1, k1);
+        add(weight, j2, k2);
+        return;
+      }
+      const HalfRow one = half_row(0, j1, k1);
+      const HalfRow two = half_row(0, j2, k2);
+      const float *w1 = weight.colour(0) + one.h, *in1 = r.colour(0) + one.h;
+      const float *w2 = weight.colour(0) + two.h, *in2 = r.colour(0) + two.h;
+#pragma GCC ivdep
+      for (Index m = 0; m < one.count; ++m) sum[m] += w1[m] * in1[m] + w2[m] * in2[m];
+    };
     // Cell i of a row belongs to aggregate i / 2 and acts on the one before it if i is even, else on the one after.
-    const auto add_along_row = [&](Index j, Index k) {
+    const auto add_own = [&](Index j, Index k) {
       for (Index c = 0; c < colours; ++c) {
         const HalfRow row = half_row(c, j, k);
-        const float* w = beside[0].colour(c) + row.h;
-        const float* in = r.colour(c) + row.h;
+        const float *w = own.colour(c) + row.h, *in = r.colour(c) + row.h;
+        if (!joined[0]) {
+#pragma GCC ivdep
+          for (Index m = 0; m < row.count; ++m) sum[row.first + 2 * m] += w[m] * in[m];
+          continue;
+        }
+        const float* along = beside[0].colour(c) + row.h;
         if (row.first == 0) {
+          const Index last = row.count - 1;
 #pragma GCC ivdep
-          for (Index m = 1; m < row.count; ++m) sum[m - 1] += w[m] * in[m];
-          if (s.periodic[0]) sum[sc.n.x - 1] += w[0] * in[0];
+          for (Index m = 0; m < last; ++m) sum[m] += w[m] * in[m] + along[m + 1] * in[m + 1];
+          sum[last] += w[last] * in[last];
+          if (s.periodic[0]) sum[sc.n.x - 1] += along[0] * in[0];
         } else {
+          if (row.count > 0) sum[0] += w[0] * in[0];
 #pragma GCC ivdep
-          for (Index m = 0; m + 1 < sc.n.x; ++m) sum[m + 1] += w[m] * in[m];
-          if (s.periodic[0] && s.n.x % 2 == 0) sum[0] += w[row.count - 1] * in[row.count - 1];
+          for (Index m = 1; m < row.count; ++m) sum[m] += w[m] * in[m] + along[m - 1] * in[m - 1];
+          if (row.count < sc.n.x && row.count > 0) sum[row.count] += along[row.count - 1] * in[row.count - 1];
+          if (s.periodic[0] && s.n.x % 2 == 0) sum[0] += along[row.count - 1] * in[row.count - 1];
         }
       }
     };
     const Rows y = rows_of(jc, joined[1], s.n.y, s.periodic[1]);
     const Rows z = rows_of(kc, joined[2], s.n.z, s.periodic[2]);
     for (int kk = 0; kk < z.count; ++kk) {
-      for (int jj = 0; jj < y.count; ++jj) {
-        add(own, y.own[jj], z.own[kk]);
-        if (joined[0]) add_along_row(y.own[jj], z.own[kk]);
+      const Index k = z.own[kk];
+      for (int jj = 0; jj < y.count; ++jj) add_own(y.own[jj], k);
+      if (y.minus >= 0 && y.plus >= 0) {
+        add_two(beside[1], y.minus, k, y.plus, k);
+      } else if (y.minus >= 0 || y.plus >= 0) {
+        add(beside[1], std::max(y.minus, y.plus), k);
       }
-      if (y.minus >= 0) add(beside[1], y.minus, z.own[kk]);
-      if (y.plus >= 0) add(beside[1], y.plus, z.own[kk]);
     }
     for (int jj = 0; jj < y.count; ++jj) {
-      if (z.minus >= 0) add(beside[2], y.own[jj], z.minus);
-      if (z.plus >= 0) add(beside[2], y.own[jj], z.plus);
+      const Index j = y.own[jj];
+      if (z.minus >= 0 && z.plus >= 0) {
+        add_two(beside[2], j, z.minus, j, z.plus);
+      } else if (z.minus >= 0 || z.plus >= 0) {
+        add(beside[2], j, std::max(z.minus, z.plus));
+      }
     }
     for (Index c = 0; c < 2; ++c) {
       const HalfRow row = coarse.half_row(c, jc, kc);

@@ -68,14 +68,16 @@ void PressureMatrix::finish() {
   });
 }
 
-void multiply(const PressureMatrix& matrix, const HostArray<Real>& x_array, const HostArray<Real>& result) {
+namespace {
+
+// result = A x; after_row(r, row) is called when a row of it is there.
+template <class AfterRow>
+void multiply_rows(const PressureMatrix& matrix, const Real* x, Real* y, AfterRow&& after_row) {
   const Stencil& s = matrix.stencil;
   const Real* cx = matrix.coefficient[0].data();
   const Real* cy = matrix.coefficient[1].data();
   const Real* cz = matrix.coefficient[2].data();
   const Real* d = matrix.diagonal.data();
-  const Real* x = x_array.data();
-  Real* y = result.data();
   const Index sy = s.face_step(1);
   const Index sz = s.face_step(2);
   const Real wx = s.n.x > 1 ? 1 : 0;
@@ -92,7 +94,14 @@ void multiply(const PressureMatrix& matrix, const HostArray<Real>& x_array, cons
              wy * (cy[fy] * x[row.y_minus + i] + cy[fy + sy] * x[row.y_plus + i]) -
              wz * (cz[fz] * x[row.z_minus + i] + cz[fz + sz] * x[row.z_plus + i]);
     });
+    after_row(r, row);
   });
+}
+
+}  // namespace
+
+void multiply(const PressureMatrix& matrix, const HostArray<Real>& x, const HostArray<Real>& result) {
+  multiply_rows(matrix, x.data(), result.data(), [](Index, const Row&) {});
 }
 
 PressureLinearSolver::PressureLinearSolver(const FlowGeometry& geometry, PressureSolver kind)
@@ -116,23 +125,34 @@ void PressureLinearSolver::remove_mean(const PressureMatrix& matrix, const HostA
   });
 }
 
+// z from r; returns the sum of r z.
+Real PressureLinearSolver::precondition(const PressureMatrix& matrix, Real residual) {
+  const Index n = matrix.stencil.cells();
+  const Real product = preconditioner_->apply(r_, z_, residual / static_cast<Real>(n));
+  if (!matrix.singular) return product;
+  remove_mean(matrix, z_);
+  const Real *r = r_.data(), *z = z_.data();
+  return sum_("cfd::pressure_system::dot_rz", n, [=](Index c) { return r[c] * z[c]; });
+}
+
 LinearReport PressureLinearSolver::solve(const PressureMatrix& matrix, const HostArray<Real>& b,
                                          const HostArray<Real>& x, Real target, int max_iterations) {
   const Index n = matrix.stencil.cells();
+  const Index nx = matrix.stencil.n.x;
   Real* r = r_.data();
   Real* z = z_.data();
   Real* p = p_.data();
   Real* q = q_.data();
   Real* xs = x.data();
   const Real* bs = b.data();
+  row_sums_.assign(static_cast<std::size_t>(matrix.stencil.rows()), 0);
   for_entries("cfd::pressure_system::start", n, [&](Index c) {
     xs[c] = 0;
     r[c] = bs[c];
   });
   if (matrix.singular) remove_mean(matrix, r_);
-  const auto magnitude = [&](Index c) { return std::abs(r[c]); };
   LinearReport report;
-  report.residual = sum_("cfd::pressure_system::magnitude", n, magnitude);
+  report.residual = sum_("cfd::pressure_system::magnitude", n, [&](Index c) { return std::abs(r[c]); });
   if (!(report.residual > target)) {
     report.converged = report.residual <= target;
     return report;
@@ -141,20 +161,36 @@ LinearReport PressureLinearSolver::solve(const PressureMatrix& matrix, const Hos
   Real rho = 0;
   report.converged = false;
   while (report.iterations < max_iterations) {
-    preconditioner_->apply(r_, z_, report.residual / static_cast<Real>(n));
-    if (matrix.singular) remove_mean(matrix, z_);
-    const Real rho_new = sum_("cfd::pressure_system::dot_rz", n, [&](Index c) { return r[c] * z[c]; });
+    const Real rho_new = precondition(matrix, report.residual);
     const Real beta = report.iterations == 0 ? 0 : rho_new / rho;
     rho = rho_new;
     for_entries("cfd::pressure_system::turn", n, [&](Index c) { p[c] = z[c] + beta * p[c]; });
-    multiply(matrix, p_, q_);
-    const Real alpha = rho / sum_("cfd::pressure_system::dot_pq", n, [&](Index c) { return p[c] * q[c]; });
-    for_entries("cfd::pressure_system::advance", n, [&](Index c) {
-      xs[c] += alpha * p[c];
-      r[c] -= alpha * q[c];
+    multiply_rows(matrix, p, q, [&](Index line, const Row& row) {
+      const Real *direction = p + row.cell, *image = q + row.cell;
+      const Index count = nx;
+      Real product = 0;
+#pragma omp simd reduction(+ : product)
+      for (Index i = 0; i < count; ++i) product += direction[i] * image[i];
+      row_sums_[static_cast<std::size_t>(line)] = product;
     });
+    Real pq = 0;
+    for (const Real product : row_sums_) pq += product;
+    const Real alpha = rho / pq;
+    report.residual = sum_.several<1>("cfd::pressure_system::advance", n,
+                                      [=](Index begin, Index end, std::array<Real, 1>& total) {
+                                        Real magnitude = 0;
+                                        Real *solution = xs, *left = r;
+                                        const Real *direction = p, *image = q;
+                                        const Real step = alpha;
+#pragma omp simd reduction(+ : magnitude)
+                                        for (Index c = begin; c < end; ++c) {
+                                          solution[c] += step * direction[c];
+                                          left[c] -= step * image[c];
+                                          magnitude += std::abs(left[c]);
+                                        }
+                                        total[0] += magnitude;
+                                      })[0];
     ++report.iterations;
-    report.residual = sum_("cfd::pressure_system::magnitude_again", n, magnitude);
     if (report.residual <= target) {
       report.converged = true;
       break;

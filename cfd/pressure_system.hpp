@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "cfd/fixed_sum.hpp"
 #include "cfd/flow_geometry.hpp"
@@ -34,8 +35,8 @@ class PressurePreconditioner {
   virtual ~PressurePreconditioner() = default;
   /// Called before every solve; may keep what it has if that still serves.
   virtual void update(const PressureMatrix& matrix) = 0;
-  /// `size`: mean of |r|.
-  virtual void apply(const HostArray<Real>& r, const HostArray<Real>& z, Real size) = 0;
+  /// `size`: mean of |r|. Returns the sum of r z.
+  virtual Real apply(const HostArray<Real>& r, const HostArray<Real>& z, Real size) = 0;
   /// Told how many iterations the solve took.
   virtual void solved(int /*iterations*/) {}
   virtual void drop() {}
@@ -61,9 +62,11 @@ class PressureLinearSolver {
 
  private:
   void remove_mean(const PressureMatrix& matrix, const HostArray<Real>& v);
+  Real precondition(const PressureMatrix& matrix, Real residual);
 
   std::unique_ptr<PressurePreconditioner> preconditioner_;
   HostArray<Real> r_, z_, p_, q_;
+  std::vector<Real> row_sums_;
   FixedSum sum_;
 };
 

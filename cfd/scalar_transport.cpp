@@ -17,6 +17,8 @@ namespace pellicle::cfd {
 
 namespace {
 
+constexpr Real solve_over_change = 1e-2;  // tolerances of linear solves and of the deferred correction
+
 HostArray<Real> make_array(const std::string& label, Index size) {
   return make_field<Real>(label, static_cast<std::size_t>(size));
 }
@@ -319,7 +321,7 @@ void ScalarTransport::apply(const char* label, const Real* x, Take&& take) const
   });
 }
 
-TransportReport ScalarTransport::solve() {
+TransportReport ScalarTransport::solve(Real tolerance) {
   collect_right_side();
   Real* right_side = linear_solver_.right_side().data();
   for_entries("cfd::scalar_transport::divide", geometry_.stencil.cells(),
@@ -330,7 +332,7 @@ TransportReport ScalarTransport::solve() {
       [&](const Real* x, auto&& take) {
         apply("cfd::scalar_transport::near", x, [&](Index c, Real near) { take(c, near / own_(c)); });
       },
-      options_.tolerance, max_iterations);
+      tolerance, max_iterations);
   if (!report.converged) {
     throw RunError(fmt::format("gas: the {} did not converge in {} iterations (relative residual {:.3g})",
                                name_, report.iterations, report.residual));
@@ -403,7 +405,7 @@ void ScalarTransport::stay_within_bounds(const Bounds& bounds, ScalarReport& rep
   while (const int found = flag_cells_beyond(bounds)) {
     report.returned += found;
     drop_flagged_corrections();
-    report.iterations += solve().iterations;
+    report.iterations += solve(options_.tolerance).iterations;
     ++report.solves;
   }
 }
@@ -421,20 +423,27 @@ ScalarReport ScalarTransport::update(const GasFields& fields, Real dt, const Sca
   assemble(fields, dt, source);
   const Bounds bounds = find_bounds(fields, dt, source);
   const Real range = bounds.high - bounds.low;
+  // As long as corrections follow, solves need only be closer than the change that ends them.
+  const Real largest = std::max(std::abs(bounds.low), std::abs(bounds.high));
+  const Real close_enough =
+      largest > 0 ? solve_over_change * options_.correction_tolerance * range / largest : 0;
+  const Real tolerance =
+      scheme_ == Convection::upwind ? options_.tolerance : std::max(options_.tolerance, close_enough);
   ScalarReport report;
   HostArray<Real>& before = value_;  // written anew at the end of the step
   bool done = false;
   while (!done) {
     Kokkos::deep_copy(before, excess_);
     compute_correction();
-    report.iterations += solve().iterations;
+    report.iterations += solve(tolerance).iterations;
     ++report.solves;
-    Real change = 0;
-    for (std::size_t c = 0; c < before.extent(0); ++c)
-      change = std::max(change, std::abs(excess_(c) - before(c)));
+    const Real *now = excess_.data(), *then = before.data();
+    const Real change = sum_.largest("cfd::scalar_transport::change", geometry_.stencil.cells(),
+                                     [=](Index c) { return std::abs(now[c] - then[c]); });
     done = scheme_ == Convection::upwind || report.solves >= options_.max_corrections ||
            !(change > options_.correction_tolerance * range);
   }
+  if (tolerance > options_.tolerance) report.iterations += solve(options_.tolerance).iterations;
   if (scheme_ == Convection::ultimate_quickest) stay_within_bounds(bounds, report);
   finish(fields, dt, source);
   return report;

@@ -92,7 +92,7 @@ class ScalarTransport {
   void collect_right_side();
   template <class Take>
   void apply(const char* label, const Real* x, Take&& take) const;
-  TransportReport solve();
+  TransportReport solve(Real tolerance);
   Bounds find_bounds(const GasFields& fields, Real dt, const ScalarSource& source) const;
   int flag_cells_beyond(const Bounds& bounds);
   void drop_flagged_corrections();

@@ -138,18 +138,15 @@ void for_faces(const char* label, const Stencil& s, int axis, F&& f, Ask&& ask) 
       if (first == 0) f(row.x_face, row.cell + s.n.x - 1, row.cell, Index{0}, r);
 #pragma GCC ivdep
       for (Index i = 1; i < s.n.x; ++i) f(row.x_face + i, row.cell + i - 1, row.cell + i, i, r);
-    } else if (axis == 1) {
-      if (row.j < first) return;
-#pragma GCC ivdep
-      for (Index i = 0; i < s.n.x; ++i) {
-        f(row.y_face + i, row.y_minus + i, row.cell + i, row.j, i + s.n.x * row.k);
-      }
     } else {
-      if (row.k < first) return;
+      // One loop for both: of a large f called in several places the compiler makes a function, face by face.
+      const Index position = axis == 1 ? row.j : row.k;
+      if (position < first) return;
+      const Index face = axis == 1 ? row.y_face : row.z_face;
+      const Index minus = axis == 1 ? row.y_minus : row.z_minus;
+      const Index place = s.n.x * (axis == 1 ? row.k : row.j);
 #pragma GCC ivdep
-      for (Index i = 0; i < s.n.x; ++i) {
-        f(row.z_face + i, row.z_minus + i, row.cell + i, row.k, i + s.n.x * row.j);
-      }
+      for (Index i = 0; i < s.n.x; ++i) f(face + i, minus + i, row.cell + i, position, place + i);
     }
   });
 }

@@ -210,6 +210,22 @@ class CommandLine(unittest.TestCase):
         self.assertNotIn("OMP_PROC_BIND", result.stdout + result.stderr)
         self.assertEqual(run("run", self.case, "--threads", "0").returncode, 2)
 
+    @unittest.skipIf(len(os.sched_getaffinity(0)) < 2, "needs two processors")
+    def test_few_threads_are_not_bound(self):
+        """Several runs of one thread each share the processors: none of them is bound to the first one."""
+        bare = {name: value for name, value in os.environ.items() if not name.startswith("OMP_")}
+        process = subprocess.Popen(
+            [PROGRAM, "run", str(self.case), "--output", str(self.results), "--threads", "1", "--set", "time.end=1e6"],
+            env=bare, stdout=subprocess.DEVNULL)
+        try:
+            deadline = time.monotonic() + 60
+            while not (self.results / "checkpoint.h5").is_file() and time.monotonic() < deadline:
+                time.sleep(0.02)
+            self.assertEqual(os.sched_getaffinity(process.pid), os.sched_getaffinity(0))
+        finally:
+            process.kill()
+            process.wait(60)
+
     def test_warnings_reach_the_log(self):
         self.run_case("--until", "1 ms", "--set", "coupling.drag=rong")
         self.assertIn("--set: coupling: of no use: the case has no gas", (self.results / "run.log").read_text())

@@ -1,4 +1,5 @@
 // The command line of pellicle.
+#include <sched.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -23,9 +24,18 @@ constexpr const char* examples = R"(Examples:
 
 Exit codes: 0 done, 2 bad input, 3 failed while running, 130 interrupted (a checkpoint is written).)";
 
-/// OpenMP reads where to put its threads before main: starts the program anew with them set, once.
-void bind_threads(char** argv) {
+/// OpenMP reads where to put its threads before main: starts the program anew with them set, once. Threads are bound only
+/// where they take all processors: two runs of one thread each would be bound to the same one.
+/// `asked_for`: the number of threads; 0: OMP_NUM_THREADS says, if anything does.
+void bind_threads(char** argv, int asked_for) {
   if (std::getenv("OMP_PROC_BIND") != nullptr) return;
+  const char* number = std::getenv("OMP_NUM_THREADS");
+  const int threads = asked_for > 0 || number == nullptr ? asked_for : std::atoi(number);
+  cpu_set_t allowed;
+  if (threads > 0 && sched_getaffinity(0, sizeof allowed, &allowed) == 0 && threads < CPU_COUNT(&allowed)) {
+    setenv("OMP_PROC_BIND", "false", 1);
+    return;
+  }
   setenv("OMP_PROC_BIND", "spread", 1);
   if (std::getenv("OMP_PLACES") == nullptr) setenv("OMP_PLACES", "threads", 1);
   execv("/proc/self/exe", argv);
@@ -91,7 +101,7 @@ int run_program(int argc, char** argv) {
   }
 
   if (*run_app) {
-    bind_threads(argv);
+    bind_threads(argv, run.threads);
     return pellicle::tools::run_command(run);
   }
   if (*check_app) return pellicle::tools::check_command(check_file, check_overrides);
