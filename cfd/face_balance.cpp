@@ -413,7 +413,7 @@ void FaceBalance::compute_pressure_gradient(const GasFields& fields, const HostA
         const Real* plus = axis == 0 ? around + 2 : eps + begin + (axis == 1 ? row.y_plus : row.z_plus);
         const Real *jump = jump_[a].data() + face, *inertial = inertial_[a].data() + face;
         const Real *velocity = fields.superficial[a].data() + face, *drag = beta + cell;
-        const Real* force = fields.force.data() + axis * n + cell;
+        const Real* force = fields.force.data() + static_cast<std::ptrdiff_t>(axis) * n + cell;
         const Real body = options_.body_force[axis];
         const Real* width = geometry_.axis[a].width.data();
         const Index along = axis == 0 ? begin : (axis == 1 ? row.j : row.k);

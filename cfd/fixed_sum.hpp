@@ -35,7 +35,8 @@ class FixedSum {
     by_blocks(label, count, [&](Index begin, Index end) {
       std::array<Real, n> sums{};
       block(begin, end, sums);
-      std::copy(sums.begin(), sums.end(), parts_.begin() + begin / block_size * static_cast<Index>(n));
+      const auto block_number = static_cast<std::size_t>(begin) / block_size;
+      std::copy(sums.begin(), sums.end(), parts_.data() + n * block_number);
       return Real{0};
     });
     for (std::size_t i = 0; i < parts_.size(); ++i) total[i % n] += parts_[i];
@@ -64,7 +65,7 @@ class FixedSum {
         first = values[0] > first ? values[0] : first;
         second = values[1] > second ? values[1] : second;
       }
-      const auto at = static_cast<std::size_t>(begin / block_size * 2);
+      const std::size_t at = 2 * (static_cast<std::size_t>(begin) / block_size);
       parts_[at] = first;
       parts_[at + 1] = second;
       return Real{0};

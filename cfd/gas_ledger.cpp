@@ -32,7 +32,7 @@ void GasSolver::Impl::update_stocks() {
   const auto sums = sum.several<4>("cfd::gas_solver::stocks", n, [=](Index begin, Index end, auto& total) {
     total[3] += sum_over(begin, end, [=](Index c) { return rho[c] * volume[c] * eps[c]; });
     for (int a = 0; a < 3; ++a) {
-      const Real* along = u + a * n;
+      const Real* along = u + static_cast<std::ptrdiff_t>(a) * n;
       total[static_cast<std::size_t>(a)] +=
           sum_over(begin, end, [=](Index c) { return rho[c] * volume[c] * eps[c] * along[c]; });
     }
@@ -91,7 +91,8 @@ void GasSolver::Impl::add_to_balance(Real dt, const ParticleExchange& exchange) 
       const auto a = static_cast<std::size_t>(axis);
       const Real g = gravity[axis];
       const Real given = body_force[axis];
-      const Real *along = u + axis * n, *pushed = force + axis * n;
+      const std::ptrdiff_t shift = static_cast<std::ptrdiff_t>(axis) * n;
+      const Real *along = u + shift, *pushed = force + shift;
       const Vec3* gradient = state.pressure_gradient.data();
       total[a] +=
           sum_over(begin, end, [=](Index c) { return volume[c] * (eps[c] * (given + excess[c] * g)); });

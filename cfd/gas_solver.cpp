@@ -17,7 +17,7 @@ namespace {
 
 // Relative, of the momentum solve of a step's first iteration. What it leaves is far less than what the new pressure
 // changes.
-constexpr Real rough_momentum_tolerance = 1e-3;
+constexpr Real rough_momentum_tolerance = 1e-4;
 
 HostArray<Real> make_array(const char* label, Index size) {
   return make_field<Real>(label, static_cast<std::size_t>(size));

@@ -78,9 +78,10 @@ MomentumEquation::MomentumEquation(const FlowGeometry& geometry, const Boundarie
   own_ = make_array("cfd::momentum::own", 3 * n);
   source_ = make_array("cfd::momentum::source", 3 * n);
   inverse_ = make_array("cfd::momentum::inverse", 3 * n);
-  packed_ = make_field<float>("cfd::momentum::packed", static_cast<std::size_t>(15 * n));
-  defect_ = make_field<float>("cfd::momentum::defect", static_cast<std::size_t>(3 * n));
-  for (auto& one : trial_) one = make_field<float>("cfd::momentum::trial", static_cast<std::size_t>(3 * n));
+  packed_ = make_field<float>("cfd::momentum::packed", std::size_t{15} * static_cast<std::size_t>(n));
+  defect_ = make_field<float>("cfd::momentum::defect", std::size_t{3} * static_cast<std::size_t>(n));
+  for (auto& one : trial_)
+    one = make_field<float>("cfd::momentum::trial", std::size_t{3} * static_cast<std::size_t>(n));
   const Stencil& s = geometry.stencil;
   // Around an odd periodic axis two rows of one colour are neighbours.
   // A wall without shear mirrors the flow: beyond it a cell's neighbour is the cell itself, at the end of a row too.
@@ -156,7 +157,8 @@ void MomentumEquation::assemble(const GasFields& fields) {
         source[b] = &source_(row.cell + b * n);
       }
       const Index nx = s.n.x;
-      for (const Real* next : {flux, conductance, tangential, extra, extra + faces, extra + 2 * faces}) {
+      for (const Real* next :
+           {flux, conductance, tangential, extra, extra + faces, extra + std::ptrdiff_t{2} * faces}) {
         prefetch_row(next + nx + step, nx);
       }
       for (const Real* next : {near_minus, near_plus, normal_minus, normal_plus}) prefetch_row(next + nx, nx);

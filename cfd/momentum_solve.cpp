@@ -3,6 +3,7 @@
 // goes through. Elsewhere BiCGStab goes on from where the sweeps came to.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 #include <vector>
@@ -18,8 +19,9 @@ constexpr Real single_precision = 1e-6;  // of a correction
 constexpr Real rough = 1e-5;             // a tolerance that single precision surely meets
 constexpr Real sharper = 0.3;         // a correction is solved for by so much more closely than is asked for
 constexpr Real least_progress = 0.1;  // of a correction
-constexpr int packed_values = 15;     // a cell: near, normal, inverse
-constexpr Real large_start = 1e6;     // right-hand side over solution
+constexpr std::ptrdiff_t packed_values = 15;  // a cell: near, normal, inverse
+constexpr Real one_sweep_leaves = 10;         // times a rough tolerance: no need for a second one
+constexpr Real large_start = 1e6;             // right-hand side over solution
 
 }  // namespace
 
@@ -27,7 +29,7 @@ constexpr Real large_start = 1e6;     // right-hand side over solution
 struct MomentumEquation::RowSum {
   RowSum(const MomentumEquation& equation, const Row& row, int component, const Real* u) {
     const Index n = equation.geometry_.stencil.cells();
-    const Index shift = component * n;
+    const auto shift = static_cast<std::ptrdiff_t>(component) * n;
     for (std::size_t d = 0; d < 6; ++d) {
       const auto& of = static_cast<int>(d / 2) == component ? equation.normal_ : equation.near_;
       coefficient[d] = of[d].data() + row.cell;
@@ -46,7 +48,8 @@ struct MomentumEquation::RowSum {
       prefetch_row(equation.near_[d].data() + next, s.n.x);
       prefetch_row(equation.normal_[d].data() + next, s.n.x);
     }
-    for (int a = 0; a < 3; ++a) prefetch_row(u + next + a * s.cells() + s.face_step(2), s.n.x);
+    for (int a = 0; a < 3; ++a)
+      prefetch_row(u + next + static_cast<std::ptrdiff_t>(a) * s.cells() + s.face_step(2), s.n.x);
   }
   Real operator()(Index i, Index left, Index right) const {
     return (coefficient[0][i] * own[left] + coefficient[1][i] * own[right]) +
@@ -107,12 +110,12 @@ Real MomentumEquation::compute_defect(const Real* u, Real factor) {
     const Row row = s.row(r);
     Real total = 0;
     for (int a = 0; a < 3; ++a) {
-      prefetch_row(right_side + row.cell + nx + a * n, nx);
-      prefetch_row(inverse + row.cell + nx + a * n, nx);
       const RowSum near(*this, row, a, u);
       const Index first = row.cell + a * n;
+      prefetch_row(right_side + first + nx, nx);
+      prefetch_row(inverse + first + nx, nx);
       const Real *b = right_side + first, *inv = inverse + first, *old = u + first;
-      float* out = defect_.data() + (3 * r + a) * nx;
+      float* out = defect_.data() + (std::ptrdiff_t{3} * r + a) * nx;
       const auto at = [=](Index i, Index left, Index right) {
         const Real defect = b[i] + near(i, left, right) * inv[i] - old[i];
         out[i] = static_cast<float>(defect * factor);
@@ -139,7 +142,7 @@ void MomentumEquation::pack(const Row& row) const {
   };
   for (std::size_t d = 0; d < 6; ++d) put(near_[d].data() + row.cell);
   for (std::size_t d = 0; d < 6; ++d) put(normal_[d].data() + row.cell);
-  for (int a = 0; a < 3; ++a) put(inverse_.data() + row.cell + a * n);
+  for (int a = 0; a < 3; ++a) put(inverse_.data() + row.cell + static_cast<std::ptrdiff_t>(a) * n);
 }
 
 // What a solve begins with, in one go through memory: the equation divided by its diagonal, its defect as
@@ -159,7 +162,7 @@ MomentumEquation::Begun MomentumEquation::begin(const GasFields& fields, const I
     prefetch_row(all + nx, nx);
     prefetch_row(old + nx, nx);
     static thread_local std::vector<Real> scratch;
-    if (!keeps) scratch.resize(static_cast<std::size_t>(2 * nx));
+    if (!keeps) scratch.resize(std::size_t{2} * static_cast<std::size_t>(nx));
     Real defects = 0;
     Real sizes = 0;
     Real rate = 0;
@@ -193,7 +196,7 @@ MomentumEquation::Begun MomentumEquation::begin(const GasFields& fields, const I
       }
       sizes += size;
       rate = largest;
-      float* out = defect_.data() + (3 * r + a) * nx;
+      float* out = defect_.data() + (std::ptrdiff_t{3} * r + a) * nx;
       const Real *b = right_side, *inv = inverse;
       defects += sum_along_row<Real>(row, [=](Index i, Index left, Index right) {
         const Real defect = b[i] + near(i, left, right) * inv[i] - now[i];
@@ -226,23 +229,27 @@ Real MomentumEquation::sweep(const float* d, float* next) {
       const Row row = s.row(r);
       if (row.k % 2 != colour) return;
       const float* coefficients = packed_.data() + packed_values * row.cell;
-      prefetch_row(coefficients + packed_values * nx, packed_values * nx);
-      prefetch_row(defect_.data() + 3 * (row.cell + nx), 3 * nx);
+      prefetch_row(coefficients + packed_values * nx, static_cast<Index>(packed_values) * nx);
+      prefetch_row(defect_.data() + std::ptrdiff_t{3} * (row.cell + nx), 3 * nx);
       float total = 0;
       for (int a = 0; a < 3; ++a) {
         const auto coefficient = [&](int side) {
-          return coefficients + (side / 2 == a ? side + 6 : side) * nx;
+          return coefficients + std::ptrdiff_t{side / 2 == a ? side + 6 : side} * nx;
         };
         const float *xm = coefficient(0), *xp = coefficient(1), *ym = coefficient(2);
         const float *yp = coefficient(3), *zm = coefficient(4), *zp = coefficient(5);
-        const float* inv = coefficients + (12 + a) * nx;
+        const float* inv = coefficients + std::ptrdiff_t{12 + a} * nx;
         const float* beside = colour == 1 && coloured_ ? next : d;
-        const auto values = [&](Index cell) { return (cell == row.cell ? d : beside) + 3 * cell + a * nx; };
-        const float *own = d + 3 * row.cell + a * nx, *y_minus = d + 3 * row.y_minus + a * nx;
-        const float* y_plus = d + 3 * row.y_plus + a * nx;
+        const std::ptrdiff_t shift = std::ptrdiff_t{a} * nx;
+        const auto values = [&](Index cell) {
+          return (cell == row.cell ? d : beside) + std::ptrdiff_t{3} * cell + shift;
+        };
+        const float *own = d + std::ptrdiff_t{3} * row.cell + shift,
+                    *y_minus = d + std::ptrdiff_t{3} * row.y_minus + shift;
+        const float* y_plus = d + std::ptrdiff_t{3} * row.y_plus + shift;
         const float *z_minus = values(row.z_minus), *z_plus = values(row.z_plus);
-        const float* b = defect_.data() + 3 * row.cell + a * nx;
-        float* out = next + 3 * row.cell + a * nx;
+        const float* b = defect_.data() + std::ptrdiff_t{3} * row.cell + shift;
+        float* out = next + std::ptrdiff_t{3} * row.cell + shift;
         const auto update = [=](Index i, Index left, Index right) {
           const float near = (xm[i] * own[left] + xp[i] * own[right]) +
                              (ym[i] * y_minus[i] + yp[i] * y_plus[i]) +
@@ -320,8 +327,8 @@ TransportReport MomentumEquation::solve(const GasFields& fields, const Inertia& 
   const auto add = [&](const float* d) {
     for_rows("cfd::momentum_solve::add", s, [&](const Index r) {
       for (int a = 0; a < 3; ++a) {
-        Real* out = u + r * s.n.x + a * n;
-        const float* change = d + (3 * r + a) * s.n.x;
+        Real* out = u + static_cast<std::ptrdiff_t>(r) * s.n.x + static_cast<std::ptrdiff_t>(a) * n;
+        const float* change = d + (std::ptrdiff_t{3} * r + a) * s.n.x;
 #pragma GCC ivdep
         for (Index i = 0; i < s.n.x; ++i) out[i] += back * static_cast<Real>(change[i]);
       }
@@ -335,7 +342,7 @@ TransportReport MomentumEquation::solve(const GasFields& fields, const Inertia& 
     if (report.converged || report.iterations >= options_.solver.max_linear_iterations) return report;
     if (!(defect < least_progress * before)) break;
     before = defect;
-    swept_roughly_ = roughly ? !(begun.rate * defect <= target) : swept_roughly_;
+    if (roughly) swept_roughly_ = !(begun.rate * defect <= one_sweep_leaves * target);
     if (roughly && !swept_roughly_) {
       add(defect_.data());
       ++report.iterations;

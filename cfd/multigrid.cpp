@@ -69,7 +69,7 @@ class Multigrid final : public PressurePreconditioner {
         float* b = top.b.colour(c) + half.h;
         const Real* from = in + row.cell + half.first;
 #pragma GCC ivdep
-        for (Index m = 0; m < half.count; ++m) b[m] = static_cast<float>(from[2 * m] * scale);
+        for (Index m = 0; m < half.count; ++m) b[m] = static_cast<float>(from[std::ptrdiff_t{2} * m] * scale);
       }
     });
     cycle(0);
@@ -82,7 +82,7 @@ class Multigrid final : public PressurePreconditioner {
         const float* x = top.x.colour(c) + half.h;
         Real* to = out + row.cell + half.first;
 #pragma GCC ivdep
-        for (Index m = 0; m < half.count; ++m) to[2 * m] = back * static_cast<Real>(x[m]);
+        for (Index m = 0; m < half.count; ++m) to[std::ptrdiff_t{2} * m] = back * static_cast<Real>(x[m]);
       }
       const Real *given = in + row.cell, *found = out + row.cell;
       const Index count = top.s.n.x;

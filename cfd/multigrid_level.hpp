@@ -17,8 +17,9 @@ namespace pellicle::cfd {
 struct SplitField {
   SplitField() = default;
   SplitField(const char* label, Index half_count)
-      : half(half_count), values(make_field<float>(label, static_cast<std::size_t>(2 * half_count))) {}
-  float* colour(Index c) const { return values.data() + c * half; }
+      : half(half_count),
+        values(make_field<float>(label, std::size_t{2} * static_cast<std::size_t>(half_count))) {}
+  float* colour(Index c) const { return values.data() + std::ptrdiff_t{c} * half; }
   float& at(Index place) const { return values.data()[(place & 1) * half + (place >> 1)]; }
 
   Index half = 0;

@@ -26,7 +26,8 @@ struct Jet {
       : grid(Box{{0, 0, 0}, {0.1, 0.1, 0.2}}, {10, 10, 20}),
         exchange(make_empty_exchange(grid)),
         solver(grid, options,
-               {{"jet", Side::z_min, Box{{0.03, 0.03, -1}, {0.07, 0.07, 1}}, Inlet{jet_speed, {}}, "case.yaml:2"},
+               {{"jet", Side::z_min, Box{{0.03, 0.03, -1}, {0.07, 0.07, 1}}, Inlet{jet_speed, {}},
+                 "case.yaml:2"},
                 {"top", Side::z_max, {}, Outlet{0}, "case.yaml:3"}}) {}
   static GasOptions make_options() {
     GasOptions options = make_air(Convection::central);
@@ -57,7 +58,9 @@ TEST(KeptCoefficients, ChangeAStepOnlyAsMuchAsItsOwnIterationsWould) {
 TEST(KeptCoefficients, AreLeftWhereTheVoidFractionChanges) {
   Jet one;
   Jet other;
-  const auto change = [](Jet& jet, int i) { Kokkos::deep_copy(jet.exchange.void_fraction, 1 - 1e-3 * (i % 2)); };
+  const auto change = [](Jet& jet, int i) {
+    Kokkos::deep_copy(jet.exchange.void_fraction, 1 - 1e-3 * (i % 2));
+  };
   for (int i = 0; i < 6; ++i) {
     change(one, i);
     change(other, i);
@@ -101,7 +104,8 @@ TEST(OuterIterations, SayHowMuchTheFaceVelocitiesStillChange) {
     FAIL() << "two iterations cannot reach 1e-12";
   } catch (const RunError& error) {
     const std::string message = error.what();
-    EXPECT_NE(message.find("after 2 outer iterations face velocities still change by"), std::string::npos) << message;
+    EXPECT_NE(message.find("after 2 outer iterations face velocities still change by"), std::string::npos)
+        << message;
     EXPECT_NE(message.find("solver.outer_tolerance 1e-12 is required"), std::string::npos) << message;
     EXPECT_NE(message.find("in cell ("), std::string::npos) << message;
   }
