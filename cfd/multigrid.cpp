@@ -126,7 +126,8 @@ class Multigrid final : public PressurePreconditioner {
     for (Index line = 0; line < s.rows(); ++line) {
       const Row row = s.row(line);
       along_row(row, s.n.x, [&](Index i, Index left, Index right) {
-        const auto c = static_cast<std::size_t>(row.cell + i);
+        const Index cell = row.cell + i;
+        const auto c = static_cast<std::size_t>(cell);
         const Index e = m.place(i, row.j, row.k);
         const Index near[3][2] = {{row.cell + left, row.cell + right},
                                   {row.y_minus + i, row.y_plus + i},
