@@ -65,6 +65,9 @@ class Spray {
   std::vector<NozzleFigures> figures() const;
   SprayHeat heat() const { return {enthalpy_.value(), free_heat_.value()}; }
   const Parcels& parcels() const { return parcels_; }
+  const Nozzle& nozzle(std::int32_t number) const {
+    return injectors_[static_cast<std::size_t>(number)].nozzle();
+  }
   /// Substeps between two moves, in the present outer step.
   int stride() const { return stride_; }
   std::size_t bytes() const;

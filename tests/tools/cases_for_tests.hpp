@@ -287,7 +287,7 @@ spray:
      droplet_diameter: {table: {diameters: ["10 um", "20 um"], shares: [3, 1], by: mass}}}
   - {name: seventh, position: [0, 0, "90 mm"], speed: 1, mass_rate: 1,
      droplet_diameter: {table: {diameters: ["10 um", "20 um"], finer: [0, 1]}}}
-output: {probes: [{name: coated, coating: {}, quantities: [coating_mass_cov]}]}
+output: {probes: [{name: coated, coating: {}, quantities: [coating_mass_cov]}], snapshots: {spray: [id, mass]}}
 )";
 
 /// Two particles and nothing else.

@@ -34,6 +34,12 @@ def write_snapshots(folder):
             group["position"] = np.array([[0.02, 0.01, 0.02 + 0.01 * step], [0.06, 0.01, 0.03]])
             group["velocity"] = np.array([[0, 0, 0.1], [0.2, 0, 0]])
             group["radius"] = np.array([0.005, 0.004])
+    with h5py.File(folder / "spray.h5", "w") as h5:
+        for step in range(3):
+            group = h5.create_group(f"step{step:010}")
+            group.attrs["time"], group.attrs["step"] = 0.1 * step, step
+            group["position"] = np.array([[0.05, 0.01, 0.01 * n] for n in range(step)]).reshape(-1, 3)
+            group["diameter"] = np.full(step, 50e-6)
     with h5py.File(folder / "gas.h5", "w") as h5:
         for axis, cells, length in (("x", 10, 0.1), ("y", 2, 0.02), ("z", 8, 0.08)):
             h5[f"grid/{axis}"] = np.linspace(0, length, cells + 1)
@@ -95,6 +101,26 @@ class Plots(unittest.TestCase):
             picture.unlink()
         done = run("bed_image.py", results, "--frames", "2", "-o", self.folder / "bed.png")
         self.assertIn("t = 0.1, 0.2 s", done.stdout)
+
+    def test_droplets_in_the_picture(self):
+        from matplotlib.image import imread
+
+        results = self.folder / "sprayed"
+        results.mkdir()
+        write_snapshots(results)
+        picture = self.folder / "bed.png"
+        blue = []
+        for time in ("0", "0.1", "0.2"):  # with none, one and two parcels
+            done = run("bed_image.py", results, "--gas", "none", "--spray", "100", "--time", time, "-o", picture)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            red, green, over = (imread(picture)[..., channel] for channel in range(3))
+            blue.append(np.count_nonzero((red < 0.02) & (abs(green - 0.651) < 0.02) & (abs(over - 0.839) < 0.02)))
+        self.assertEqual(blue[0], 0)
+        self.assertGreater(blue[1], 30)
+        self.assertAlmostEqual(blue[2], 2 * blue[1], delta=0.2 * blue[1])
+        (results / "spray.h5").unlink()
+        done = run("bed_image.py", results, "--spray", "100", "-o", picture)
+        self.assertIn("holds no snapshots of a spray", done.stderr)
 
     def test_gas_image(self):
         results = self.folder / "gas"

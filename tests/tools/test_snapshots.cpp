@@ -139,6 +139,46 @@ TEST(ParticleSnapshots, KilledRunLeavesReadableFiles) {
   }
 }
 
+// Parcels come and go: none at first, two, none again, and a run that resumes among those.
+TEST(SpraySnapshots, AsManyRowsAsParcelsFly) {
+  TemporaryFolder folder;
+  HostParcels two;
+  two.state.push_back({{0.1, 0.2, 0.3}, {3, 4, 0}, 30e-6, 10});
+  two.state.push_back({{0.4, 0.5, 0.6}, {0, 0, -2}, 40e-6, 20.5});
+  two.name = {{7, 0, 0}, {3, 1, 0}};
+  two.mass = {1e-9, 2e-9};
+  const std::vector<std::string> fields{"id", "nozzle", "velocity", "speed", "diameter", "droplets", "mass"};
+  {
+    SpraySnapshots snapshots(folder.path(), fields);
+    snapshots.write(0, 0, {});
+  }
+  EXPECT_EQ(count_of(core::read_file(folder / "spray.xdmf"), "NumberOfElements=\"1\""), 1);
+  {
+    SpraySnapshots snapshots(folder.path(), fields, 0);
+    snapshots.write(10, 0.1, two);
+    snapshots.write(20, 0.2, {});
+  }
+  const core::Hdf5File file(folder / "spray.h5", core::Hdf5File::Mode::read);
+  EXPECT_EQ(file.members("/"),
+            (std::vector<std::string>{"rows", "step0000000000", "step0000000010", "step0000000020"}));
+  EXPECT_EQ(file.shape("step0000000000/position"), (std::vector<std::size_t>{0, 3}));
+  EXPECT_EQ(file.shape("step0000000020/mass"), (std::vector<std::size_t>{0}));
+  const std::string group = "step0000000010/";
+  EXPECT_EQ(file.attribute_double("step0000000010", "time"), 0.1);
+  EXPECT_EQ(file.read<double>(group + "position"), (std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5, 0.6}));
+  EXPECT_EQ(file.read<double>(group + "velocity"), (std::vector<double>{3, 4, 0, 0, 0, -2}));
+  EXPECT_EQ(file.read<double>(group + "speed"), (std::vector<double>{5, 2}));
+  EXPECT_EQ(file.read<std::int32_t>(group + "id"), (std::vector<std::int32_t>{7, 3}));
+  EXPECT_EQ(file.read<std::int32_t>(group + "nozzle"), (std::vector<std::int32_t>{0, 1}));
+  EXPECT_EQ(file.read<double>(group + "diameter"), (std::vector<double>{30e-6, 40e-6}));
+  EXPECT_EQ(file.read<double>(group + "droplets"), (std::vector<double>{10, 20.5}));
+  EXPECT_EQ(file.read<double>(group + "mass"), (std::vector<double>{1e-9, 2e-9}));
+  const std::string xdmf = core::read_file(folder / "spray.xdmf");
+  EXPECT_EQ(count_of(xdmf, "NumberOfElements=\"2\""), 1);
+  EXPECT_EQ(count_of(xdmf, "spray.h5:/step0000000010/mass"), 1);
+  EXPECT_EQ(count_of(xdmf, "step0000000020/mass"), 0);  // readers refuse a grid of nothing
+}
+
 TEST(GasSnapshots, CellsInXdmfOrder) {
   TemporaryFolder folder;
   const CartesianGrid grid(

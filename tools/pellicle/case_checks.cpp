@@ -594,6 +594,7 @@ class Checker {
     const auto unused = [&](const std::string& path, std::string_view why) {
       if (given(path)) warn(path, fmt::format("of no use: the case has no {}", why));
     };
+    if (spec_.spray.empty()) unused("output.snapshots.spray", "spray");
     if (spec_.particles.empty()) {
       if (!spec_.gas) unused("walls", "particles and no gas");
       for (const auto* path : {"time.particle_step", "time.impact_speed", "time.settle", "materials",

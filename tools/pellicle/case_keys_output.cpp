@@ -22,6 +22,8 @@ void describe_snapshots(Keys& keys, SnapshotSpec& snapshots) {
   keys.real({"every", "0: none"}, interval, snapshots.every);
   keys.choices({"particles", "fields of particles.h5, besides the position"}, particle_snapshot_fields, {},
                snapshots.particles);
+  keys.choices({"spray", "fields of spray.h5, besides the position; an empty list: no spray.h5"},
+               spray_snapshot_fields, {}, snapshots.spray);
   keys.choices({"gas", "fields of gas.h5"}, gas_snapshot_fields, {}, snapshots.gas);
 }
 

@@ -339,6 +339,7 @@ struct WindowSpec {
 struct SnapshotSpec {
   Real every = 0;                                                  ///< [s]; 0: none
   std::vector<std::string> particles{"id", "velocity", "radius"};  ///< names of fields
+  std::vector<std::string> spray{"nozzle", "velocity", "diameter", "mass"};
   std::vector<std::string> gas{"velocity", "pressure", "void_fraction"};
 };
 

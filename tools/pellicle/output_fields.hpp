@@ -28,6 +28,17 @@ inline constexpr std::array<core::ModelInfo, 14> particle_snapshot_fields{{
     {"hits", "spray parcels captured; needs spray [-]"},
 }};
 
+/// Fields of a snapshot of the spray (spray.h5), a row a parcel in flight; the position is always written.
+inline constexpr std::array<core::ModelInfo, 7> spray_snapshot_fields{{
+    {"id", "number of the parcel among those of its nozzle, the same through the run [-]"},
+    {"nozzle", "number of the nozzle, in the order of the case file [-]"},
+    {"velocity", "velocity of the droplets, three components [m/s]"},
+    {"speed", "magnitude of the velocity [m/s]"},
+    {"diameter", "diameter of each droplet [m]"},
+    {"droplets", "droplets that the parcel stands for; no whole number [-]"},
+    {"mass", "mass of all droplets of the parcel [kg]"},
+}};
+
 /// Fields of a gas snapshot (gas.h5), all at cell centres.
 inline constexpr std::array<core::ModelInfo, 11> gas_snapshot_fields{{
     {"velocity", "interstitial gas velocity, three components [m/s]"},

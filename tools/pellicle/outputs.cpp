@@ -25,6 +25,9 @@ Outputs::Outputs(const CaseSpec& spec, const ResultsFolder& folder, core::TimeCo
   if (!spec.particles.empty()) {
     particle_snapshots_.emplace(folder.path(), spec.output.snapshots.particles, resume_step);
   }
+  if (!spec.spray.empty() && !spec.output.snapshots.spray.empty()) {
+    spray_snapshots_.emplace(folder.path(), spec.output.snapshots.spray, resume_step);
+  }
   if (gas_grid != nullptr && !spec.output.snapshots.gas.empty()) {
     gas_snapshots_.emplace(folder.path(), spec.output.snapshots.gas, *gas_grid, resume_step);
   }
@@ -38,6 +41,9 @@ void Outputs::sample(const OutputState& state, bool last) {
   zones_.sample(state, last);
   if (!snapshot_schedule_.due(state.step) && !last) return;
   if (particle_snapshots_) particle_snapshots_->write(state.step, state.time, state.host_particles());
+  if (spray_snapshots_ && state.spray != nullptr) {
+    spray_snapshots_->write(state.step, state.time, copy_to_host(*state.spray));
+  }
   if (gas_snapshots_ && state.gas != nullptr) gas_snapshots_->write(state.step, state.time, *state.gas);
 }
 

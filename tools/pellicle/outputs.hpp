@@ -48,6 +48,7 @@ class Outputs {
   ZoneOutputs zones_;
   core::Schedule snapshot_schedule_;
   std::optional<ParticleSnapshots> particle_snapshots_;
+  std::optional<SpraySnapshots> spray_snapshots_;
   std::optional<GasSnapshots> gas_snapshots_;
 };
 

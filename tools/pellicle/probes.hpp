@@ -19,6 +19,10 @@
 #include "tools/pellicle/wall_figures.hpp"
 #include "tools/pellicle/zone_outputs.hpp"
 
+namespace pellicle::spray {
+class Spray;
+}
+
 namespace pellicle::tools {
 
 /// The state that outputs look at, after an outer step. `host_particles()` copies the particles once a step at most,
@@ -32,6 +36,7 @@ struct OutputState {
   const std::vector<WallFigures>* walls = nullptr;  ///< of all walls of the case
   const SideFigures* sides = nullptr;               ///< null without particles
   const Zones* zones = nullptr;                     ///< null without particles
+  const spray::Spray* spray = nullptr;              ///< null without a spray
 
   /// Empty without particles.
   const HostParticles& host_particles() const;

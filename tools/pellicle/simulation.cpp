@@ -513,6 +513,7 @@ void Simulation::write_outputs(bool last) {
   }
   state.walls = &walls_;
   if (particles_) state.zones = &zones_;
+  if (spray_) state.spray = &*spray_;
   if (particles_) state.sides = &particles_->left_by_side();
   if (gas_) {
     const cfd::GasState& gas = gas_->state();

@@ -25,14 +25,14 @@ std::string attribute(const SnapshotArray& array, const std::string& h5_path, co
                      data_item(h5_path, array.shape, array.integer));
 }
 
-// --- particles -------------------------------------------------------------------------------------------------
+// --- particles and parcels -------------------------------------------------------------------------------------
 
 constexpr const char* rows_name = "rows";
 
 /// A cloud of points. One of ParaView's readers takes a cloud for points, the other draws nothing unless each point is
 /// named by a connectivity: the first rows of a data set that all snapshots share. An empty cloud gets one point
 /// without data, since readers refuse a grid of nothing.
-std::string describe_particles(const std::string& h5_name, const SnapshotRecord& record, std::size_t rows) {
+std::string describe_cloud(const std::string& h5_name, const SnapshotRecord& record, std::size_t rows) {
   const std::string base = h5_name + ":/" + record.group + "/";
   std::size_t count = 0;
   for (const auto& array : record.arrays) {
@@ -58,23 +58,22 @@ std::string describe_particles(const std::string& h5_name, const SnapshotRecord&
   return text;
 }
 
-/// Writes one array with a value from each particle.
+/// Writes one array with a value from each of `count` points.
 template <class Value>
-void write_per_particle(core::Hdf5File& file, const std::string& name, const HostParticles& particles,
-                        const Value& value) {
+void write_per_point(core::Hdf5File& file, const std::string& name, std::size_t count, const Value& value) {
   using T = std::remove_cvref_t<decltype(value(std::size_t{0}))>;
   if constexpr (std::is_same_v<T, Vec3>) {
-    std::vector<double> numbers(3 * particles.count());
-    for (std::size_t p = 0; p < particles.count(); ++p) {
+    std::vector<double> numbers(3 * count);
+    for (std::size_t p = 0; p < count; ++p) {
       const Vec3 v = value(p);
       numbers[3 * p] = v.x;
       numbers[3 * p + 1] = v.y;
       numbers[3 * p + 2] = v.z;
     }
-    file.write(name, std::span<const double>(numbers), std::array<std::size_t, 2>{particles.count(), 3});
+    file.write(name, std::span<const double>(numbers), std::array<std::size_t, 2>{count, 3});
   } else {
-    std::vector<T> numbers(particles.count());
-    for (std::size_t p = 0; p < numbers.size(); ++p) numbers[p] = value(p);
+    std::vector<T> numbers(count);
+    for (std::size_t p = 0; p < count; ++p) numbers[p] = value(p);
     file.write(name, std::span<const T>(numbers));
   }
 }
@@ -82,7 +81,7 @@ void write_per_particle(core::Hdf5File& file, const std::string& name, const Hos
 void write_particle_field(core::Hdf5File& file, const std::string& group, const std::string& field,
                           const HostParticles& particles) {
   const std::string name = group + "/" + field;
-  const auto put = [&](const auto& value) { write_per_particle(file, name, particles, value); };
+  const auto put = [&](const auto& value) { write_per_point(file, name, particles.count(), value); };
   const auto& places = particles.position_radius;
   const auto& motions = particles.velocity_spin;
   if (field == "position") {
@@ -121,6 +120,39 @@ void write_particle_field(core::Hdf5File& file, const std::string& group, const 
   } else {
     throw std::logic_error("no particle field " + field);
   }
+}
+
+void write_spray_field(core::Hdf5File& file, const std::string& group, const std::string& field,
+                       const HostParcels& parcels) {
+  const std::string name = group + "/" + field;
+  const auto put = [&](const auto& value) { write_per_point(file, name, parcels.count(), value); };
+  const auto& states = parcels.state;
+  if (field == "position") {
+    put([&](std::size_t i) { return states[i].position; });
+  } else if (field == "id") {
+    put([&](std::size_t i) { return static_cast<std::int32_t>(parcels.name[i].number); });
+  } else if (field == "nozzle") {
+    put([&](std::size_t i) { return parcels.name[i].nozzle; });
+  } else if (field == "velocity") {
+    put([&](std::size_t i) { return states[i].velocity; });
+  } else if (field == "speed") {
+    put([&](std::size_t i) { return norm(states[i].velocity); });
+  } else if (field == "diameter") {
+    put([&](std::size_t i) { return states[i].diameter; });
+  } else if (field == "droplets") {
+    put([&](std::size_t i) { return states[i].droplets; });
+  } else if (field == "mass") {
+    put([&](std::size_t i) { return parcels.mass[i]; });
+  } else {
+    throw std::logic_error("no spray field " + field);
+  }
+}
+
+/// The position comes first, and once.
+std::vector<std::string> with_position(std::vector<std::string> fields) {
+  std::erase(fields, "position");
+  fields.insert(fields.begin(), "position");
+  return fields;
 }
 
 // --- gas -------------------------------------------------------------------------------------------------------
@@ -180,32 +212,50 @@ void write_gas_field(core::Hdf5File& file, const std::string& group, const std::
 
 }  // namespace
 
-ParticleSnapshots::ParticleSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
-                                     std::optional<std::int64_t> resume_step)
-    : fields_(std::move(fields)),
-      series_(
-          folder, "particles",
+CloudSeries::CloudSeries(const std::filesystem::path& folder, const std::string& name,
+                         std::optional<std::int64_t> resume_step)
+    : series_(
+          folder, name,
           [this](const std::string& h5_name, const SnapshotRecord& record) {
-            return describe_particles(h5_name, record, rows_);
+            return describe_cloud(h5_name, record, rows_);
           },
           resume_step) {
-  std::erase(fields_, "position");
-  fields_.insert(fields_.begin(), "position");
-  if (!series_.records().empty()) {
-    rows_ = series_.shape(rows_name).at(0);
-    series_.write_xdmf();
-  }
+  if (series_.records().empty()) return;
+  const std::vector<std::size_t> rows = series_.shape(rows_name);
+  rows_ = rows.empty() ? 0 : rows.front();  // none if there never was a point
+  series_.write_xdmf();
 }
 
-void ParticleSnapshots::write(std::int64_t step, Real time, const HostParticles& particles) {
+void CloudSeries::add(std::int64_t step, Real time, std::size_t count,
+                      const std::function<void(core::Hdf5File&, const std::string& group)>& write) {
   series_.add(step, time, [&](core::Hdf5File& file, const std::string& group) {
-    for (const auto& field : fields_) write_particle_field(file, group, field, particles);
-    if (particles.count() <= rows_) return;
-    rows_ = particles.count();
+    write(file, group);
+    if (count <= rows_) return;
+    rows_ = count;
     std::vector<std::int32_t> rows(rows_);
     std::iota(rows.begin(), rows.end(), 0);
     if (file.has(rows_name)) file.remove(rows_name);
     file.write(rows_name, std::span<const std::int32_t>(rows));
+  });
+}
+
+ParticleSnapshots::ParticleSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
+                                     std::optional<std::int64_t> resume_step)
+    : fields_(with_position(std::move(fields))), series_(folder, "particles", resume_step) {}
+
+void ParticleSnapshots::write(std::int64_t step, Real time, const HostParticles& particles) {
+  series_.add(step, time, particles.count(), [&](core::Hdf5File& file, const std::string& group) {
+    for (const auto& field : fields_) write_particle_field(file, group, field, particles);
+  });
+}
+
+SpraySnapshots::SpraySnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
+                               std::optional<std::int64_t> resume_step)
+    : fields_(with_position(std::move(fields))), series_(folder, "spray", resume_step) {}
+
+void SpraySnapshots::write(std::int64_t step, Real time, const HostParcels& parcels) {
+  series_.add(step, time, parcels.count(), [&](core::Hdf5File& file, const std::string& group) {
+    for (const auto& field : fields_) write_spray_field(file, group, field, parcels);
   });
 }
 

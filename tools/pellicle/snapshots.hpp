@@ -1,5 +1,5 @@
-// Snapshots of all particles and of the gas: particles.h5 and gas.h5, each with an XDMF file beside it, which is what
-// ParaView opens. One group a snapshot, "step0000005000", with attributes step and time [s].
+// Snapshots of all particles, of the spray and of the gas: particles.h5, spray.h5 and gas.h5, each with an XDMF file
+// beside it, which is what ParaView opens. One group a snapshot, "step0000005000", with attributes step and time [s].
 //
 // The HDF5 file is open only while a snapshot is being added, and the XDMF file, replaced afterwards as a whole, names
 // complete snapshots only: a run can be watched while it runs, and a killed one leaves both readable.
@@ -14,6 +14,7 @@
 
 #include "core/types.hpp"
 #include "tools/pellicle/gas_fields.hpp"
+#include "tools/pellicle/host_parcels.hpp"
 #include "tools/pellicle/particle_quantities.hpp"
 
 namespace pellicle::core {
@@ -68,20 +69,48 @@ class SnapshotSeries {
   std::vector<SnapshotRecord> records_;
 };
 
+/// A time series of clouds of points, as many of them as there are at the time: the field "position" of each snapshot.
+class CloudSeries {
+ public:
+  /// As SnapshotSeries.
+  CloudSeries(const std::filesystem::path& folder, const std::string& name,
+              std::optional<std::int64_t> resume_step);
+  CloudSeries(const CloudSeries&) = delete;
+  CloudSeries& operator=(const CloudSeries&) = delete;
+  /// Adds a snapshot of `count` points; `write` fills the group that it is given.
+  void add(std::int64_t step, Real time, std::size_t count,
+           const std::function<void(core::Hdf5File&, const std::string& group)>& write);
+
+ private:
+  std::size_t rows_ = 0;  ///< length of the data set "rows": 0, 1, 2, ..., which XDMF needs as a connectivity
+  SnapshotSeries series_;
+};
+
 /// particles.h5: one row a particle, in the order of their ids; positions always, other fields as named.
 class ParticleSnapshots {
  public:
   /// `fields`: names from particle_snapshot_fields.
   ParticleSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
                     std::optional<std::int64_t> resume_step = std::nullopt);
-  ParticleSnapshots(const ParticleSnapshots&) = delete;
-  ParticleSnapshots& operator=(const ParticleSnapshots&) = delete;
   void write(std::int64_t step, Real time, const HostParticles& particles);
 
  private:
   std::vector<std::string> fields_;
-  std::size_t rows_ = 0;  ///< length of the data set "rows": 0, 1, 2, ..., which XDMF needs as a connectivity
-  SnapshotSeries series_;
+  CloudSeries series_;
+};
+
+/// spray.h5: one row a parcel in flight, in the order of nozzles and of their numbers; positions always, other fields as
+/// named.
+class SpraySnapshots {
+ public:
+  /// `fields`: names from spray_snapshot_fields.
+  SpraySnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
+                 std::optional<std::int64_t> resume_step = std::nullopt);
+  void write(std::int64_t step, Real time, const HostParcels& parcels);
+
+ private:
+  std::vector<std::string> fields_;
+  CloudSeries series_;
 };
 
 /// gas.h5: fields at cell centres, arrays nz x ny x nx (x 3), and the face coordinates of the grid.

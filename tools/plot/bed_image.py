@@ -5,6 +5,7 @@
     bed_image.py results/single_spout --time 0.5 1 1.5 -o bed.png
     bed_image.py results/single_spout --frames 4 -o bed.png      # 4 moments over the run, side by side
     bed_image.py results/single_spout --animate bed.gif          # all snapshots
+    bed_image.py results/wurster --spray 200 -o bed.png          # with the spray, its droplets 200 times as large
 
 The gas is shown by arrows (mean over the depth, their length growing with the root of the speed) over the particles,
 or, with --gas void_fraction, by its void fraction and arrows in a panel of its own beside each frame.
@@ -28,6 +29,8 @@ def parse_arguments():
     parser.add_argument("--height", type=float, help="draw up to this height above the floor [m]")
     parser.add_argument("--slab", type=float, nargs=2, metavar=("FROM", "TO"),
                         help="only particles with y between these [m]")
+    parser.add_argument("--spray", type=float, metavar="SCALE",
+                        help="draw the parcels of spray.h5 over all, one dot each, SCALE times a droplet's diameter wide")
     parser.add_argument("--arrows", type=int, default=22, help="arrows across the bed, at most one a cell")
     parser.add_argument("--title", help="over the figure")
     parser.add_argument("--animate", metavar="FILE", help="write all snapshots as an animated GIF")
@@ -58,6 +61,15 @@ class Frame:
     def __init__(self, results, time, arguments):
         self.time = time
         self.gas = results.gas(time) if results.gas_times() and arguments.gas != "none" else None
+        self.parcels = None
+        if arguments.spray and results.spray_times():
+            self.parcels = results.parcels(time)
+            if "diameter" not in self.parcels:
+                fail(f"{results.folder}: the snapshots lack the diameter; add it to output.snapshots.spray")
+            if arguments.slab:
+                y = self.parcels["position"][:, 1]
+                keep = (y >= arguments.slab[0]) & (y <= arguments.slab[1])
+                self.parcels = {name: self.parcels[name][keep] for name in ("position", "diameter")}
         self.position = np.zeros((0, 3))
         self.radius = self.speed = np.zeros(0)
         if results.particle_times():
@@ -152,6 +164,16 @@ def draw_particles(axes, frame, largest_speed):
     return circles
 
 
+def draw_parcels(axes, frame, scale):
+    """Dots over the particles and the arrows; parcels that a particle in front hides are seen too."""
+    from matplotlib.collections import EllipseCollection
+
+    width = 1e3 * scale * frame.parcels["diameter"]
+    axes.add_collection(EllipseCollection(
+        width, width, np.zeros(len(width)), units="xy", zorder=5, facecolors="#00a6d6", edgecolors="none",
+        offsets=1e3 * frame.parcels["position"][:, [0, 2]].reshape(-1, 2), offset_transform=axes.transData))
+
+
 def draw_void_fraction(axes, frame, grid):
     return axes.pcolormesh(1e3 * grid["x"], 1e3 * grid["z"], mean_over_depth(frame.gas["void_fraction"], grid),
                            cmap="Blues_r", vmin=0.35, vmax=1, zorder=1, rasterized=True)
@@ -178,6 +200,8 @@ def draw(plt, frames, grid, box, largest_speed, arguments):
         panel = every[2 * number if pairs else number]
         prepare_axes(panel, box, f"t = {frame.time:.4g} s")
         circles = draw_particles(panel, frame, largest_speed)
+        if frame.parcels is not None:
+            draw_parcels(panel, frame, arguments.spray)
         if pairs:
             beside = every[2 * number + 1]
             prepare_axes(beside, box, "")
@@ -213,6 +237,8 @@ def animate(plt, frames, grid, box, largest_speed, arguments):
 def main():
     arguments = parse_arguments()
     results = Results(arguments.results)
+    if arguments.spray and not results.spray_times():
+        fail(f"{results.folder}: holds no snapshots of a spray; ask for them with output.snapshots.spray")
     frames = [Frame(results, time, arguments) for time in choose_times(results, arguments)]
     grid = results.gas_grid()
     box = extent(frames, grid, arguments)

@@ -5,6 +5,7 @@
     results.line("z50mm")                 # Table: position, value, standard deviation, samples
     results.particle_times()              # [0.0, 0.05, ...]
     results.particles(0.5)                # the snapshot nearest to 0.5 s: dict of numpy arrays, and "time"
+    results.parcels(0.5)                  # likewise the spray
     results.gas(0.5), results.gas_grid()  # arrays nz x ny x nx (x 3); face coordinates x, y, z
 """
 
@@ -113,11 +114,17 @@ class Results:
     def particle_times(self):
         return [time for time, _ in self._snapshots("particles")]
 
+    def spray_times(self):
+        return [time for time, _ in self._snapshots("spray")]
+
     def gas_times(self):
         return [time for time, _ in self._snapshots("gas")]
 
     def particles(self, time):
         return self._snapshot("particles", time)
+
+    def parcels(self, time):
+        return self._snapshot("spray", time)
 
     def gas(self, time):
         return self._snapshot("gas", time)
