@@ -11,25 +11,9 @@
 #include "dem/companion.hpp"
 #include "dem/particles.hpp"
 #include "heat/surface_state.hpp"
+#include "spray/zone_shape.hpp"
 
 namespace pellicle::spray {
-
-/// A box along the axes, or a cylinder between two points.
-struct ZoneShape {
-  bool is_box = true;
-  Vec3 min, max;                ///< of a box [m]
-  Vec3 from, axis;              ///< of a cylinder: centre of one end [m], unit vector to the other
-  Real length = 0, radius = 0;  ///< [m]
-
-  KOKKOS_INLINE_FUNCTION bool contains(const Vec3& x) const {
-    if (is_box) {
-      return x.x >= min.x && x.x <= max.x && x.y >= min.y && x.y <= max.y && x.z >= min.z && x.z <= max.z;
-    }
-    const Vec3 d = x - from;
-    const Real along = dot(d, axis);
-    return along >= 0 && along <= length && norm_squared(d - along * axis) <= radius * radius;
-  }
-};
 
 struct ZoneOptions {
   std::string name;

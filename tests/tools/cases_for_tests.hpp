@@ -287,7 +287,11 @@ spray:
      droplet_diameter: {table: {diameters: ["10 um", "20 um"], shares: [3, 1], by: mass}}}
   - {name: seventh, position: [0, 0, "90 mm"], speed: 1, mass_rate: 1,
      droplet_diameter: {table: {diameters: ["10 um", "20 um"], finer: [0, 1]}}}
-output: {probes: [{name: coated, coating: {}, quantities: [coating_mass_cov]}], snapshots: {spray: [id, mass]}}
+output: {probes: [{name: coated, coating: {}, quantities: [coating_mass_cov]}], snapshots: {spray: [id, mass]},
+  wetness:
+    - {name: low, box: {min: [0, 0, 0], max: ["40 mm", "40 mm", "50 mm"]}, measure: liquid_fraction, wettest: 0.9, bins: 9,
+       fastest: "2 m/s", speed_bins: 10, sample: particle_step, every: "1 ms"}
+    - {name: core, cylinder: {from: ["20 mm", "20 mm", 0], to: ["20 mm", "20 mm", "60 mm"], radius: "4 mm"}}}
 )";
 
 /// Two particles and nothing else.

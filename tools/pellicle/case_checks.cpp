@@ -67,6 +67,12 @@ class Checker {
       if (spec_.particles.empty())
         wrong(zone.where, "name", "a case without particles has none that pass; no zones");
     }
+    for (const auto& wetness : spec_.output.wetness) {
+      if (spec_.particles.empty() || !spec_.follows("film_liquid"))
+        wrong(wetness.where, "name", "no particle of this case can be wet; heat or spray, or no wetness");
+      if (wetness.measure == 1 && wetness.wettest > 1)
+        wrong(wetness.where, "wettest", "no fraction is above 1; at most 1");
+    }
     warn_of_unused();
   }
 
@@ -112,6 +118,7 @@ class Checker {
     check_unique(spec_.output.probes);
     check_unique(spec_.output.histograms);
     check_unique(spec_.output.zones);
+    check_unique(spec_.output.wetness);
   }
 
   /// Cells are counted by an Index; says whether they can be.

@@ -146,6 +146,9 @@ void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
   for (auto& zone : spec.output.zones) {
     if (zone.longest_time == 0) zone.longest_time = spec.time.end;
   }
+  for (auto& wetness : spec.output.wetness) {
+    if (wetness.wettest == 0) wetness.wettest = wetness.measure == 0 ? 0.02 : 1;
+  }
   for (auto& line : spec.output.lines) {
     if (line.thickness == 0) line.thickness = default_thickness(spec, line);
     if (line.average.to == 0) line.average.to = spec.time.end;

@@ -174,6 +174,37 @@ void describe_zone(Keys& keys, ZoneSpec& zone) {
              zone.size_classes);
 }
 
+void describe_wetness(Keys& keys, WetnessSpec& wetness) {
+  static constexpr core::ModelInfo samples[] = {
+      {"gas_step",
+       "contacts that began in the last particle step of each gas step; each counts for all particle steps "
+       "of it"},
+      {"particle_step", "all contacts; costs another search for pairs every particle step"}};
+  if (keys.reading()) wetness.where = keys.where();
+  keys.text({"name", "of the file histograms/NAME_wetness.csv", Need::required}, TextRule::name,
+            wetness.name);
+  keys.section<Box>({"box", "contacts in a box"}, wetness.box, describe_box);
+  keys.section<dem::CylinderRegion>({"cylinder", "contacts in a cylinder"}, wetness.cylinder,
+                                    describe_cylinder);
+  keys.exactly_one({"box", "cylinder"});
+  std::optional<int> measure = wetness.measure;
+  keys.choice({"measure", "of the wetter of the two particles"}, wetness_measures, measure);
+  wetness.measure = *measure;
+  real_or_unset(keys,
+                {"wettest", "upper end of the bins of wetness, SI; wetter ones are in one more",
+                 Need::has_default, "0.02 kg/m2, or 1"},
+                {.range = range::positive}, wetness.wettest);
+  keys.whole({"bins", "of wetness; contacts of dry particles are in one more"}, {1, 10'000}, wetness.bins);
+  keys.real({"fastest", "upper end of the bins of impact speed; faster ones are in one more"},
+            {dimension::velocity, range::positive}, wetness.fastest);
+  keys.whole({"speed_bins", "of impact speed"}, {1, 10'000}, wetness.speed_bins);
+  std::optional<int> sample = wetness.sample;
+  keys.choice({"sample", "which contacts are looked at"}, samples, sample);
+  wetness.sample = *sample;
+  keys.real({"every", "time between two histograms, each of all contacts so far; 0: only at the end"},
+            interval, wetness.every);
+}
+
 }  // namespace
 
 core::ModelList quantities_of(const ProbeSpec& probe) {
@@ -207,6 +238,9 @@ void describe_output(Keys& keys, CaseSpec& spec) {
                                   describe_histogram);
         inner.list<ZoneSpec>({"zones", "where passing particles are followed: cycle and residence times"}, {},
                              output.zones, describe_zone);
+        inner.list<WetnessSpec>(
+            {"wetness", "regions in which contacts are counted by how wet and how fast they begin"}, {},
+            output.wetness, describe_wetness);
       });
 }
 

@@ -410,6 +410,21 @@ struct ZoneSpec {
   Index size_classes = 1;
 };
 
+/// A region in which the wetness of contacts is counted: one of box and cylinder.
+struct WetnessSpec {
+  std::string where;
+  std::string name;
+  std::optional<Box> box;  ///< [m]
+  std::optional<dem::CylinderRegion> cylinder;
+  int measure = 0;     ///< a position in `wetness_measures`
+  Real wettest = 0;    ///< upper end of the bins; 0 until defaults are filled in [kg/m2] or [-]
+  Index bins = 20;     ///< of wetness
+  Real fastest = 1;    ///< upper end of the bins of speed [m/s]
+  Index speed_bins = 20;
+  int sample = 0;  ///< 0: of each gas step; 1: of each particle step
+  Real every = 0;  ///< time between two histograms; 0: only at the end [s]
+};
+
 struct OutputSpec {
   Real checkpoint_every = 0;  ///< [s]; 0: only at the end
   SnapshotSpec snapshots;
@@ -417,6 +432,7 @@ struct OutputSpec {
   std::vector<ProbeSpec> probes;
   std::vector<HistogramSpec> histograms;
   std::vector<ZoneSpec> zones;
+  std::vector<WetnessSpec> wetness;
 };
 
 struct CaseSpec {

@@ -159,6 +159,13 @@ inline constexpr std::array<core::ModelInfo, 3> plane_quantities{{
     {"open_area", "area of the plane's part that is in the domain and not behind a wall [m2]"},
 }};
 
+/// What the wetness of a contact is that of, in the order of spray::WetnessMeasure.
+inline constexpr std::array<core::ModelInfo, 2> wetness_measures{{
+    {"liquid_per_surface",
+     "liquid over the surface of the bare particle, the thickness of the wet film (1 kg/m2 of water: 1 mm) [kg/m2]"},
+    {"liquid_fraction", "liquid over liquid and solids of the film [-]"},
+}};
+
 /// All quantities a line may show: particle_quantities, then gas_quantities.
 std::string line_quantity_names();
 

@@ -20,6 +20,7 @@ Outputs::Outputs(const CaseSpec& spec, const ResultsFolder& folder, core::TimeCo
       probes_(spec.output.probes, time, folder, spec.domain.box, gas_grid, time_of(time, resume_step)),
       histograms_(spec.output.histograms, time, folder, time_of(time, resume_step)),
       zones_(spec.output.zones, time, folder, time_of(time, resume_step)),
+      wetness_(spec.output.wetness, time, folder, time_of(time, resume_step)),
       snapshot_schedule_(time.schedule(spec.output.snapshots.every, "output.snapshots.every")) {
   if (snapshot_schedule_.steps == 0) return;
   if (!spec.particles.empty()) {
@@ -39,6 +40,7 @@ void Outputs::sample(const OutputState& state, bool last) {
   probes_.sample(state);
   histograms_.sample(state, last);
   zones_.sample(state, last);
+  wetness_.sample(state, last);
   if (!snapshot_schedule_.due(state.step) && !last) return;
   if (particle_snapshots_) particle_snapshots_->write(state.step, state.time, state.host_particles());
   if (spray_snapshots_ && state.spray != nullptr) {
@@ -52,6 +54,7 @@ void Outputs::flush() {
   probes_.flush();
   histograms_.flush();
   zones_.flush();
+  wetness_.flush();
   write_histogram_file(folder_.path());
 }
 

@@ -9,11 +9,12 @@
 #include "tools/pellicle/probes.hpp"
 #include "tools/pellicle/results_folder.hpp"
 #include "tools/pellicle/snapshots.hpp"
+#include "tools/pellicle/wetness_outputs.hpp"
 #include "tools/pellicle/zone_outputs.hpp"
 
 namespace pellicle::tools {
 
-/// Snapshots, lines, probes, histograms and zones of a case.
+/// Snapshots, lines, probes, histograms, zones and wetness of a case.
 class Outputs {
  public:
   /// `gas_grid` is null without gas. `resume_step` is the step of the checkpoint that the run goes on from: files
@@ -46,6 +47,7 @@ class Outputs {
   Probes probes_;
   Histograms histograms_;
   ZoneOutputs zones_;
+  WetnessOutputs wetness_;
   core::Schedule snapshot_schedule_;
   std::optional<ParticleSnapshots> particle_snapshots_;
   std::optional<SpraySnapshots> spray_snapshots_;

@@ -20,8 +20,9 @@
 #include "tools/pellicle/zone_outputs.hpp"
 
 namespace pellicle::spray {
+class ContactWetness;
 class Spray;
-}
+}  // namespace pellicle::spray
 
 namespace pellicle::tools {
 
@@ -37,6 +38,7 @@ struct OutputState {
   const SideFigures* sides = nullptr;               ///< null without particles
   const Zones* zones = nullptr;                     ///< null without particles
   const spray::Spray* spray = nullptr;              ///< null without a spray
+  const std::vector<spray::ContactWetness>* wetness = nullptr;  ///< null without particles
 
   /// Empty without particles.
   const HostParticles& host_particles() const;

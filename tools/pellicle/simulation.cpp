@@ -42,6 +42,7 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
     particles_.emplace(make_engine_setup(spec_, time_.particle_step()));
     zones_ = make_zones(spec_, particles_->particles());
     for (spray::ZoneVisits& zone : zones_) particles_->attach(zone);
+    wetness_ = make_wetness(spec_);
     feeds_ = make_feeds(spec_, particles_->setup());
     const bool sprayed = !spec_.spray.empty();
     if (spec_.heat || sprayed)
@@ -96,6 +97,7 @@ void Simulation::resume() {
   if (exchange_ && time_.step() >= 0) exchange_->load(file);
   if (heat_ && time_.step() >= 0) heat_->load(file);
   if (spray_) spray_->load(file);
+  for (spray::ContactWetness& region : wetness_) region.load(file);
   if (surface_ && time_.step() >= 0) {
     settled_left_surface_ = {
         {file.read_double("run/settled_left_liquid"), file.read_double("run/settled_left_solids")},
@@ -274,11 +276,11 @@ void Simulation::move_particles(int parts) {
   const int substeps = time_.substeps() / parts;
   summary_.particle_steps += static_cast<double>(particles_->particles().count) * substeps;
   if (!coupled()) {
-    particles_->advance(substeps, timers_, spray_hook());
+    particles_->advance(substeps, timers_, substep_hook(substeps));
     return;
   }
   coupling::advance_particles(*particles_, substeps, exchange_->fluid_force(particles_->particles()), timers_,
-                              spray_hook());
+                              substep_hook(substeps));
 }
 
 void Simulation::deposit_particles(int parts) {
@@ -513,6 +515,7 @@ void Simulation::write_outputs(bool last) {
   }
   state.walls = &walls_;
   if (particles_) state.zones = &zones_;
+  if (particles_) state.wetness = &wetness_;
   if (spray_) state.spray = &*spray_;
   if (particles_) state.sides = &particles_->left_by_side();
   if (gas_) {
@@ -565,6 +568,7 @@ void Simulation::write_checkpoint() {
   if (exchange_ && time_.step() >= 0) exchange_->save(file);
   if (heat_ && time_.step() >= 0) heat_->save(file);
   if (spray_) spray_->save(file);
+  for (const spray::ContactWetness& region : wetness_) region.save(file);
   if (surface_ && time_.step() >= 0) {
     file.write("run/settled_left_liquid", settled_left_surface_.film.liquid);
     file.write("run/settled_left_solids", settled_left_surface_.film.solids);

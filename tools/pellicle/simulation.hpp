@@ -77,7 +77,7 @@ class Simulation {
   void update_heat_ledger();
   void open_spray_ledger();
   void update_spray_ledger();
-  dem::SubstepHook spray_hook();
+  dem::SubstepHook substep_hook(int substeps);
   heat::Film films_that_came() const;
   bool has_vapour() const { return gas_ && gas_->balance(cfd::Scalar::moisture) != nullptr; }
   Real energy_stock() const;
@@ -99,6 +99,7 @@ class Simulation {
   std::optional<heat::SurfaceState> surface_;  // follows the particles, and outlives them
   std::optional<spray::Spray> spray_;          // its hit records likewise
   Zones zones_;                                // likewise
+  std::vector<spray::ContactWetness> wetness_;
   std::optional<dem::Engine> particles_;
   std::vector<dem::Feed> feeds_;
   std::optional<cfd::GasSolver> gas_;

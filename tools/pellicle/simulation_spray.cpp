@@ -15,10 +15,18 @@ void Simulation::inject_spray(int part, int parts) {
   Kokkos::fence("tools::simulation_spray::injected");
 }
 
-/// What the engine calls in every substep before the particles move; empty without a spray.
-dem::SubstepHook Simulation::spray_hook() {
-  if (!spray_ || time_.settling()) return {};
-  return [this](int substep) {
+/// What the engine calls in each of `substeps` before the particles move: parcels go, contacts are counted. Empty if there
+/// is neither.
+dem::SubstepHook Simulation::substep_hook(int substeps) {
+  if ((!spray_ && wetness_.empty()) || time_.settling()) return {};
+  return [this, substeps](int substep) {
+    if (!wetness_.empty()) {
+      const core::Timers::Scope scope(timers_, Part::output);
+      for (spray::ContactWetness& region : wetness_)
+        region.count(substep, substeps, *particles_, surface_->film());
+      Kokkos::fence("tools::simulation_spray::counted");
+    }
+    if (!spray_) return;
     const core::Timers::Scope scope(timers_, Part::spray);
     spray_->move(substep, *particles_, parcel_gas_);
     Kokkos::fence("tools::simulation_spray::moved");

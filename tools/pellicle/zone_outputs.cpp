@@ -57,17 +57,7 @@ Real deviation(Real count, Real sum, Real squares) {
 spray::ZoneOptions make_options(const ZoneSpec& spec) {
   spray::ZoneOptions options;
   options.name = spec.name;
-  if (spec.box) {
-    options.shape.min = spec.box->min;
-    options.shape.max = spec.box->max;
-  } else {
-    const Vec3 along = spec.cylinder->to - spec.cylinder->from;
-    options.shape.is_box = false;
-    options.shape.from = spec.cylinder->from;
-    options.shape.length = norm(along);
-    options.shape.axis = (1 / options.shape.length) * along;
-    options.shape.radius = spec.cylinder->radius;
-  }
+  options.shape = make_zone_shape(spec.box, spec.cylinder);
   options.shortest_absence = spec.shortest_absence;
   options.longest_time = spec.longest_time;
   options.bins = spec.bins;
@@ -76,6 +66,23 @@ spray::ZoneOptions make_options(const ZoneSpec& spec) {
 }
 
 }  // namespace
+
+spray::ZoneShape make_zone_shape(const std::optional<Box>& box,
+                                 const std::optional<dem::CylinderRegion>& cylinder) {
+  spray::ZoneShape shape;
+  if (box) {
+    shape.min = box->min;
+    shape.max = box->max;
+    return shape;
+  }
+  const Vec3 along = cylinder->to - cylinder->from;
+  shape.is_box = false;
+  shape.from = cylinder->from;
+  shape.length = norm(along);
+  shape.axis = (1 / shape.length) * along;
+  shape.radius = cylinder->radius;
+  return shape;
+}
 
 Zones make_zones(const CaseSpec& spec, const dem::Particles& particles) {
   Zones zones;

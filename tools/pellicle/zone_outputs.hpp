@@ -15,6 +15,10 @@ namespace pellicle::tools {
 
 struct OutputState;
 
+/// The box or cylinder of a zone or another region.
+spray::ZoneShape make_zone_shape(const std::optional<Box>& box,
+                                 const std::optional<dem::CylinderRegion>& cylinder);
+
 /// The zones of a case. Entries never move: the engine keeps their addresses.
 using Zones = std::deque<spray::ZoneVisits>;
 
