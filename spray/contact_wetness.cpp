@@ -77,8 +77,8 @@ struct CountPairs {
         const Vec3 normal = distance > 0 ? (1 / distance) * apart : Vec3{0, 0, 1};
         const Real overlap = sum - distance;
         if (!bins.shape.contains(self.position() - (self.radius - 0.5 * overlap) * normal)) continue;
-        const Real wetness = Kokkos::max(bins.wetness(moved.film(p), self.radius),
-                                         bins.wetness(moved.film(q), other.radius));
+        const Real wetness =
+            Kokkos::max(bins.wetness(moved.film(p), self.radius), bins.wetness(moved.film(q), other.radius));
         bins.add(wetness, Kokkos::max(-dot(relative, normal), Real(0)));
       }
     });
@@ -150,13 +150,11 @@ void ContactWetness::count(int k, int substeps, const dem::Engine& engine,
   const dem::NeighbourSearch& search = *engine.search();
   const DeviceRange all(0, particles.count);
   if (engine.setup().domain.repeats()) {
-    Kokkos::parallel_for(
-        "spray::contact_wetness::count_pairs_periodic", all,
-        CountPairs<true>{bins, moved, search.grid(), search.cell_start(), search.order()});
+    Kokkos::parallel_for("spray::contact_wetness::count_pairs_periodic", all,
+                         CountPairs<true>{bins, moved, search.grid(), search.cell_start(), search.order()});
   } else {
-    Kokkos::parallel_for(
-        "spray::contact_wetness::count_pairs", all,
-        CountPairs<false>{bins, moved, search.grid(), search.cell_start(), search.order()});
+    Kokkos::parallel_for("spray::contact_wetness::count_pairs", all,
+                         CountPairs<false>{bins, moved, search.grid(), search.cell_start(), search.order()});
   }
   const dem::WallSystem& walls = engine.walls();
   if (walls.list().count == 0) return;

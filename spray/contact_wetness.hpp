@@ -23,9 +23,9 @@ struct WetnessOptions {
   std::string name;
   ZoneShape shape;  ///< contacts count whose point lies in it
   WetnessMeasure measure = WetnessMeasure::liquid_per_surface;
-  Real wettest = 1;      ///< upper end of the bins of wetness; what is wetter is in one more
-  Index bins = 20;       ///< of wetness, besides one for dry contacts below them
-  Real fastest = 1;      ///< upper end of the bins of speed; what is faster is in one more [m/s]
+  Real wettest = 1;  ///< upper end of the bins of wetness; what is wetter is in one more
+  Index bins = 20;   ///< of wetness, besides one for dry contacts below them
+  Real fastest = 1;  ///< upper end of the bins of speed; what is faster is in one more [m/s]
   Index speed_bins = 20;
   bool every_substep = false;  ///< contacts of all substeps are looked at, not only of an outer step's first
 };

@@ -18,6 +18,14 @@ struct Path {
   Real dt;      ///< over which it goes [s]
 };
 
+/// A droplet's drag during a move.
+struct Drag {
+  Vec3 velocity;      ///< of the droplet when the move begins [m/s]
+  Vec3 gas_velocity;  ///< [m/s]
+  Real rate;          ///< at which it loses its slip [1/s]
+  Index cell;         ///< whose gas it is; -1: no gas
+};
+
 struct Touch {
   Real share = never;
   std::int32_t id = 0;
@@ -36,11 +44,8 @@ struct MoveParcel {
     const Real start = Kokkos::max(before.time, m.begin);
     const Real dt = m.end - start;
 
-    Vec3 gas_velocity{0, 0, 0};
-    if (m.gas.drag.viscosity > 0) gas_velocity = m.gas.velocity(m.gas.cell_of(parcel.position));
-    const Real rate = relaxation_rate(m.gas.drag, nozzle.density, parcel.diameter,
-                                      Kokkos::sqrt(norm_squared(gas_velocity - parcel.velocity)));
-    const DropletStep step = move_droplet(parcel.velocity, gas_velocity, rate, m.gravity, dt);
+    const Drag drag = drag_on(parcel, nozzle);
+    const DropletStep step = move_droplet(parcel.velocity, drag.gas_velocity, drag.rate, m.gravity, dt);
     const Path path{parcel.position, step.path, 0.5 * parcel.diameter, start - m.begin, dt};
 
     const Touch touch = find_touch(path);
@@ -50,6 +55,7 @@ struct MoveParcel {
     // At the same moment a particle is met before a wall, and a wall before the side that it may be.
     ParcelEnd after;
     Real share = 1;
+    bool booked = false;
     if (touch.share <= 1 && touch.share <= wall && touch.share <= side) {
       share = touch.share;
       if (wall_between(touch, path)) {
@@ -58,7 +64,15 @@ struct MoveParcel {
         after.fate = ParcelFate::captured;
         after.particle = touch.particle;
       } else {
+        book_drag(parcel, nozzle, drag, dt);
+        booked = true;
+        const Vec3 arriving = parcel.velocity;
         bounce(touch, path, parcel, after);
+        if (m.gas.gains.is_on()) {
+          const Real mass = nozzle.density * volume_of(parcel);
+          parcel.velocity =
+              arriving + (1 / mass) * m.gas.gains.book_bounce(drag.cell, mass * (parcel.velocity - arriving));
+        }
         if (after.fate == ParcelFate::flying) {
           m.parcels.state(i) = parcel;
           return;
@@ -71,6 +85,7 @@ struct MoveParcel {
       share = side;
       after.fate = ParcelFate::overspray;
     }
+    if (!booked) book_drag(parcel, nozzle, drag, share * dt);
     parcel.position = wrapped(parcel.position + share * path.way);
     m.parcels.state(i) = parcel;
     if (after.fate == ParcelFate::flying) return;
@@ -79,6 +94,28 @@ struct MoveParcel {
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION Drag drag_on(const ParcelState& parcel, const NozzleView& nozzle) const {
+    if (!(m.gas.drag.viscosity > 0)) return {parcel.velocity, {0, 0, 0}, 0, -1};
+    const Index cell = m.gas.cell_of(parcel.position);
+    const Vec3 gas_velocity = m.gas.velocity(cell);
+    const Real rate = relaxation_rate(m.gas.drag_in(cell), nozzle.density, parcel.diameter,
+                                      Kokkos::sqrt(norm_squared(gas_velocity - parcel.velocity)));
+    return {parcel.velocity, gas_velocity, rate, cell};
+  }
+
+  /// Where droplets push the gas: gives it the opposite of the drag's impulse over `time` [s], in whole units, and the
+  /// droplet the velocity that it has by the same number.
+  KOKKOS_INLINE_FUNCTION void book_drag(ParcelState& parcel, const NozzleView& nozzle, const Drag& drag,
+                                        Real time) const {
+    if (!m.gas.gains.is_on()) return;
+    const Real mass = nozzle.density * volume_of(parcel);
+    const Vec3 fallen = time * m.gravity;
+    const DropletStep step = move_droplet(drag.velocity, drag.gas_velocity, drag.rate, m.gravity, time);
+    const Vec3 impulse = m.gas.gains.take_impulse(drag.cell, mass * (step.velocity - drag.velocity - fallen));
+    parcel.velocity = drag.velocity + fallen + (1 / mass) * impulse;
+    m.gas.gains.book_flight(drag.cell, mass, time, -Kokkos::expm1(-drag.rate * time));
+  }
+
   KOKKOS_INLINE_FUNCTION Vec3 velocity_of(Index p) const {
     const dem::VelocitySpin& motion = m.targets.particles.velocity_spin(p);
     return motion.inverse_mass != 0 ? motion.velocity() : Vec3{0, 0, 0};

@@ -3,31 +3,15 @@
 
 #include <cstdint>
 
-#include "coupling/cut_grid.hpp"
-#include "coupling/grid_locator.hpp"
 #include "dem/cell_grid.hpp"
 #include "dem/particles.hpp"
 #include "spray/injector.hpp"
+#include "spray/parcel_gas.hpp"
 #include "spray/parcel_motion_laws.hpp"
 #include "spray/parcels.hpp"
 #include "spray/wall_crossing.hpp"
 
 namespace pellicle::spray {
-
-/// The gas that parcels fly through; without gas `drag` has no viscosity and the arrays are empty.
-struct ParcelGas {
-  DragGas drag;
-  coupling::GridLocator grid;
-  coupling::CutGrid cut;       ///< empty where walls do not cut the grid
-  DeviceArray<Vec3> velocity;  ///< of its cells [m/s]
-
-  /// Cell whose gas a droplet at this place [m] is in: on its own side of thin walls, and with gas.
-  KOKKOS_INLINE_FUNCTION Index cell_of(const Vec3& place) const {
-    const Index cell = grid.index(grid.x.locate(grid.x.wrap(place.x)), grid.y.locate(grid.y.wrap(place.y)),
-                                  grid.z.locate(grid.z.wrap(place.z)));
-    return cut.is_cut() ? cut.home(cell, place) : cell;
-  }
-};
 
 /// The particles that parcels may hit, and how to find those near a place.
 struct ParcelTargets {

@@ -106,6 +106,25 @@ struct SumMass {
   }
 };
 
+/// Momentum [kg m/s] of the parcels of each fate from one on, in blocks of a fixed size.
+struct SumMomentum {
+  Parcels parcels;
+  DeviceArray<NozzleView> nozzle;
+  Index first;
+  DeviceArray<Vec3> partial;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index block) const {
+    const Index begin = first + block * sum_block;
+    const Index end = Kokkos::min(begin + sum_block, parcels.count);
+    Vec3 sum[fate_count];
+    for (Index i = begin; i < end; ++i) {
+      const ParcelState parcel = parcels.state(i);
+      sum[static_cast<int>(parcels.end(i).fate)] +=
+          nozzle(parcels.name(i).nozzle).density * volume_of(parcel) * parcel.velocity;
+    }
+    for (int fate = 0; fate < fate_count; ++fate) partial(block * fate_count + fate) = sum[fate];
+  }
+};
+
 }  // namespace
 
 Spray::Spray(const SprayOptions& options, const std::vector<dem::Wall>& walls)
@@ -148,8 +167,13 @@ void Spray::inject(Real time, int substeps, const dem::Engine& engine) {
   for (const Injector& injector : injectors_)
     wanted += std::max<std::int64_t>(0, injector.due(end) - injector.injected());
   reserve(parcels_, static_cast<Index>(wanted));
+  const Index before = parcels_.count;
   for (Injector& injector : injectors_) injector.add(time, end, parcels_);
   if (parcels_.count == 0) return;
+  if (options_.watch_momentum) {
+    const Vec3 born = sum_momentum(before)[static_cast<std::size_t>(ParcelFate::flying)];
+    for (int axis = 0; axis < 3; ++axis) momentum_[static_cast<std::size_t>(axis)].add(born[axis]);
+  }
   const ParticleBounds bounds = find_bounds(engine.particles());
   largest_speed_ = bounds.largest_speed + speed_margin;
   stride_ = choose_stride(bounds, substep);
@@ -167,8 +191,8 @@ MovingWalls Spray::walls_during(const dem::Engine& engine, int substeps) const {
   return {geometry, pose_at_end_};
 }
 
-void Spray::move(int k, const dem::Engine& engine, const ParcelGas& gas) {
-  if (parcels_.count == 0 || k % stride_ != 0) return;
+bool Spray::move(int k, const dem::Engine& engine, const ParcelGas& gas) {
+  if (parcels_.count == 0 || k % stride_ != 0) return false;
   const int ahead = std::min(stride_, substeps_ - k);
   const Real substep = engine.setup().time_step;
   ParcelMove move;
@@ -187,11 +211,51 @@ void Spray::move(int k, const dem::Engine& engine, const ParcelGas& gas) {
   move.seed = options_.seed;
   move.substep = engine.substeps();
   move_parcels(move);
+  return true;
+}
+
+std::array<Vec3, fate_count> Spray::sum_momentum(Index first) const {
+  std::array<Vec3, fate_count> sum{};
+  const Index blocks = (parcels_.count - first + sum_block - 1) / sum_block;
+  if (blocks == 0) return sum;
+  const std::size_t size = static_cast<std::size_t>(blocks) * fate_count;
+  if (momentum_scratch_.extent(0) < size) {
+    momentum_scratch_ = DeviceArray<Vec3>(
+        Kokkos::view_alloc(Kokkos::WithoutInitializing, "spray::spray::momentum"), 2 * size);
+  }
+  Kokkos::parallel_for("spray::spray::sum_momentum", DeviceRange(0, blocks),
+                       SumMomentum{parcels_, nozzle_, first, momentum_scratch_});
+  const auto host = Kokkos::create_mirror_view_and_copy(
+      Kokkos::HostSpace{}, Kokkos::subview(momentum_scratch_, std::pair<std::size_t, std::size_t>(0, size)));
+  for (std::size_t i = 0; i < size; ++i) sum[i % fate_count] += host(i);
+  return sum;
+}
+
+ParcelMomentum Spray::momentum() const {
+  if (!options_.watch_momentum) return {};
+  const auto vector = [&](std::size_t first) {
+    return Vec3{momentum_[first].value(), momentum_[first + 1].value(), momentum_[first + 2].value()};
+  };
+  return {vector(0), vector(3), vector(6), vector(9),
+          sum_momentum(0)[static_cast<std::size_t>(ParcelFate::flying)]};
+}
+
+Real Spray::largest_parcel_mass() const {
+  Real largest = 0;
+  for (const Injector& injector : injectors_) largest = std::max(largest, injector.parcel_mass());
+  return largest;
 }
 
 void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& surface, const ParcelGas& gas,
                     const DeviceArray<Real>& gas_temperature) {
   if (parcels_.count == 0) return;
+  if (options_.watch_momentum) {
+    const std::array<Vec3, fate_count> sum = sum_momentum(0);
+    for (std::size_t fate = 1; fate < fate_count; ++fate) {
+      for (int axis = 0; axis < 3; ++axis)
+        momentum_[3 * fate + static_cast<std::size_t>(axis)].add(sum[fate][axis]);
+    }
+  }
   Index captured = 0;
   Kokkos::parallel_reduce("spray::spray::count_captured", DeviceRange(0, parcels_.count),
                           CountCaptured{parcels_.end}, captured);
@@ -267,6 +331,10 @@ void Spray::save(core::CheckpointWriter& file) const {
   file.write("spray/ended", Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, ended_));
   const auto enthalpy = enthalpy_.parts();
   const auto free_heat = free_heat_.parts();
+  std::vector<double> momentum;
+  for (const core::ExactSum& sum : momentum_)
+    momentum.insert(momentum.end(), {sum.parts()[0], sum.parts()[1]});
+  file.write("spray/momentum", momentum);
   file.write("spray/heat", std::vector<double>{enthalpy[0], enthalpy[1], free_heat[0], free_heat[1]});
 }
 
@@ -278,6 +346,10 @@ void Spray::load(const core::CheckpointReader& file) {
   const auto ended = Kokkos::create_mirror_view(ended_);
   file.read_into("spray/ended", ended);
   Kokkos::deep_copy(ended_, ended);
+  std::vector<double> momentum(2 * momentum_.size());
+  file.read_into("spray/momentum", momentum);
+  for (std::size_t i = 0; i < momentum_.size(); ++i)
+    momentum_[i].set_parts(momentum[2 * i], momentum[2 * i + 1]);
   std::vector<double> heat(4);
   file.read_into("spray/heat", heat);
   enthalpy_.set_parts(heat[0], heat[1]);

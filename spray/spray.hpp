@@ -1,6 +1,7 @@
 // The spray of a case: nozzles, parcels on their way, and what has become of those that are not.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct SprayOptions {
   Real parcel_step =
       0;  ///< how often parcels move [s]; 0: as seldom as their path stays below a particle's radius
   std::uint64_t seed = 1;
+  bool watch_momentum = false;  ///< what parcels bring along and take away is added up
 };
 
 /// What has become of the droplets of a nozzle, in kg of liquid and solids together; injected is the sum of the others.
@@ -41,6 +43,12 @@ struct SprayHeat {
   Real free_heat = 0;  ///< of this, what nothing gave: droplets take the gas's temperature for nothing
 };
 
+/// Momentum of parcels [kg m/s], since the start but for the last.
+struct ParcelMomentum {
+  Vec3 injected, captured, wall_loss, overspray;
+  Vec3 in_flight;  ///< now
+};
+
 /// An outer step is inject, move in its substeps (dem::SubstepHook), collect.
 class Spray {
  public:
@@ -54,8 +62,9 @@ class Spray {
   /// Before the substeps of an outer step that begins at `time` [s]: adds the parcels that leave the nozzles in it.
   void inject(Real time, int substeps, const dem::Engine& engine);
 
-  /// In substep k, before the particles move: moves the parcels, if it is their turn, until the next time it is.
-  void move(int k, const dem::Engine& engine, const ParcelGas& gas);
+  /// In substep k, before the particles move: moves the parcels, if it is their turn, until the next time it is; says
+  /// whether it was.
+  bool move(int k, const dem::Engine& engine, const ParcelGas& gas);
 
   /// After the substeps: hands what was captured to the particles and forgets parcels that fly no more. `gas_temperature`
   /// of the gas grid's cells [K] is empty without heat: no temperature then changes.
@@ -63,6 +72,10 @@ class Spray {
                const DeviceArray<Real>& gas_temperature);
 
   std::vector<NozzleFigures> figures() const;
+  /// Summed over the parcels, in blocks of a fixed size, if `SprayOptions::watch_momentum` is set; else 0.
+  ParcelMomentum momentum() const;
+  /// Of the parcels of any nozzle [kg].
+  Real largest_parcel_mass() const;
   SprayHeat heat() const { return {enthalpy_.value(), free_heat_.value()}; }
   const Parcels& parcels() const { return parcels_; }
   const Nozzle& nozzle(std::int32_t number) const {
@@ -77,6 +90,7 @@ class Spray {
 
  private:
   int choose_stride(const ParticleBounds& bounds, Real substep) const;
+  std::array<Vec3, fate_count> sum_momentum(Index first) const;
   MovingWalls walls_during(const dem::Engine& engine, int substeps) const;
 
   SprayOptions options_;
@@ -98,6 +112,8 @@ class Spray {
   Real largest_speed_ = 0;
 
   core::ExactSum enthalpy_, free_heat_;
+  mutable DeviceArray<Vec3> momentum_scratch_;
+  std::array<core::ExactSum, 12> momentum_;  // injected, captured, wall_loss, overspray
 };
 
 }  // namespace pellicle::spray

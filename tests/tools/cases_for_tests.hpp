@@ -287,11 +287,31 @@ spray:
      droplet_diameter: {table: {diameters: ["10 um", "20 um"], shares: [3, 1], by: mass}}}
   - {name: seventh, position: [0, 0, "90 mm"], speed: 1, mass_rate: 1,
      droplet_diameter: {table: {diameters: ["10 um", "20 um"], finer: [0, 1]}}}
-output: {probes: [{name: coated, coating: {}, quantities: [coating_mass_cov]}], snapshots: {spray: [id, mass]},
+output:
+  probes: [{name: coated, coating: {}, quantities: [coating_mass_cov]}]
+  snapshots: {spray: [id, mass]}
   wetness:
     - {name: low, box: {min: [0, 0, 0], max: ["40 mm", "40 mm", "50 mm"]}, measure: liquid_fraction, wettest: 0.9, bins: 9,
        fastest: "2 m/s", speed_bins: 10, sample: particle_step, every: "1 ms"}
-    - {name: core, cylinder: {from: ["20 mm", "20 mm", 0], to: ["20 mm", "20 mm", "60 mm"], radius: "4 mm"}}}
+    - {name: core, cylinder: {from: ["20 mm", "20 mm", 0], to: ["20 mm", "20 mm", "60 mm"], radius: "4 mm"}}
+)";
+
+/// Droplets that push the gas.
+inline constexpr const char* mist_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
+time: {end: 1, gas_step: 0.01, particle_step: 1e-5}
+materials: {bead: {density: 1500, youngs_modulus: 1e6, poisson_ratio: 0.3, heat_capacity: 900}}
+contacts: {pairs: [{between: [bead, bead], restitution: 0.9, sliding_friction: 0.3}]}
+particles: [{material: bead, diameter: "10 mm", list: [{position: [0.5, 0.5, 0.5]}]}]
+gas:
+  density: 1.2
+  viscosity: 1.8e-5
+  heat: {initial_temperature: 300}
+  moisture: {initial_vapour_mass_fraction: 0.01}
+  grid: {cells: [2, 3, 4]}
+  boundaries: [{name: out, on: top, outlet: {}}]
+heat: {}
+spray: [{name: gun, position: [0.2, 0.2, 0.2], speed: 10, mass_rate: "1 g/min", solids_fraction: 0.2, droplet_diameter: "30 um"}]
+droplets: {momentum: two_way}
 )";
 
 /// Two particles and nothing else.

@@ -128,9 +128,9 @@ TEST(CaseFile, DefaultsFollowFromOtherKeys) {
 }
 
 TEST(CaseFile, ResolvedFileGivesTheSameCase) {
-  for (const char* text :
-       {spouted_bed_case, channel_case, humid_case, rising_case, drying_case, refined_case, chamber_case,
-        powders_case, vessel_case, sprayed_case, turbulent_case, blower_case, two_particles_case}) {
+  for (const char* text : {spouted_bed_case, channel_case, humid_case, rising_case, drying_case, refined_case,
+                           chamber_case, powders_case, vessel_case, sprayed_case, mist_case, turbulent_case,
+                           blower_case, two_particles_case}) {
     const CaseSpec spec = parse_case(text, "some_case.yaml");
     const std::string resolved = resolved_yaml(spec);
     const CaseSpec again = parse_case(resolved, "another_name.yaml");
@@ -186,6 +186,7 @@ TEST(CaseFile, TheTestsCoverEveryKey) {
   given.merge(std::map(parse_case(powders_case, "c.yaml").lines));
   given.merge(std::map(parse_case(vessel_case, "c.yaml").lines));
   given.merge(std::map(parse_case(sprayed_case, "c.yaml").lines));
+  given.merge(std::map(parse_case(mist_case, "c.yaml").lines));
   const std::set<std::string> elsewhere{"coupling.transfer_grid.cells", "coupling.transfer_grid.growth",
                                         "coupling.transfer_grid.faces.x", "coupling.transfer_grid.faces.y",
                                         "coupling.transfer_grid.faces.z"};

@@ -88,6 +88,33 @@ class Spray(unittest.TestCase):
             self.assertGreater(spray["free_heat"], 0)
             self.assertLess(spray["free_heat"], spray["captured"] * 0.9 * 4181 * 40.1)
 
+    def test_droplets_push_the_gas(self):
+        """Momentum of gas, particles and droplets together, at every stop; the droplets' own sum to the last digits."""
+        with tempfile.TemporaryDirectory() as place:
+            place = Path(place)
+            defects = {}
+            for momentum in ("one_way", "two_way"):
+                folder = place / momentum
+                folder.mkdir()
+                (folder / "case.yaml").write_text(CASE + f"droplets: {{momentum: {momentum}}}\n", encoding="utf-8")
+                for until in (["--until", "3 ms"], ["--resume", "--until", "8 ms"]):
+                    summary = self.run_case(folder, *until)
+                    self.check(summary)
+                defects[momentum] = summary["defects"]["momentum"]
+            self.assertNotIn("momentum", json.loads((place / "one_way/results/summary.json").read_text())["spray"])
+            momentum = summary["spray"]["momentum"]
+            for axis in range(3):
+                came = sum(momentum[key][axis] for key in ("injected", "gravity", "bounced"))
+                went = sum(momentum[key][axis] for key in ("captured", "wall_loss", "overspray", "in_flight", "to_gas"))
+                self.assertAlmostEqual(came, went, delta=1e-12 * abs(momentum["injected"][2]))
+            # 15 m/s in a cone of 90 degrees, upwards: 5 g/min x 8 ms x 15 m/s x (1 + cos 45)/2, less what comes from above.
+            up, down = 5e-3 / 60 * 8e-3 * 15 * 0.854, 2e-3 / 60 * 5e-3 * 20 * 0.95
+            self.assertAlmostEqual(momentum["injected"][2], up - down, delta=0.02 * up)
+            for key in ("to_gas", "captured", "wall_loss", "gravity"):
+                self.assertGreater(max(map(abs, momentum[key])), 0, key)
+            print(f"momentum defect: one way {defects['one_way']:.2g}, two way {defects['two_way']:.2g}")
+            self.assertLess(defects["two_way"], 2 * defects["one_way"] + 1e-12)
+
     def test_without_gas_too(self):
         text = CASE[:CASE.index("gas:\n")] + CASE[CASE.index("spray:\n"):]
         with tempfile.TemporaryDirectory() as place:

@@ -48,17 +48,22 @@ spray::SprayOptions make_spray_options(const CaseSpec& spec) {
   options.gravity = spec.gravity;
   options.parcel_step = spec.time.parcel_step.value_or(0);
   options.seed = spec.seed;
+  options.watch_momentum = spec.droplets.two_way;
   return options;
 }
 
-spray::ParcelGas make_parcel_gas(const CaseSpec& spec, const coupling::MomentumExchange* exchange) {
-  spray::ParcelGas gas;
-  if (exchange == nullptr) return gas;
-  gas.drag = {spec.gas->options.density, spec.gas->options.viscosity};
-  gas.grid = exchange->gas_locator();
-  gas.cut = exchange->cut_grid();
-  gas.velocity = exchange->gas_velocity();
-  return gas;
+spray::DropletGas make_droplet_gas(const CaseSpec& spec, const coupling::MomentumExchange& exchange,
+                                   const HostArray<Real>& open_volume, Real largest_parcel_mass) {
+  const cfd::GasOptions& gas = spec.gas->options;
+  spray::DropletGasOptions options;
+  options.two_way = spec.droplets.two_way;
+  options.density_varies = gas.density_law != cfd::DensityLaw::constant;
+  options.viscosity_follows = gas.viscosity_law == cfd::ViscosityLaw::sutherland;
+  spray::ParcelGas around;
+  around.drag = {gas.density, gas.viscosity};
+  around.grid = exchange.gas_locator();
+  around.cut = exchange.cut_grid();
+  return {options, around, open_volume, largest_parcel_mass, spec.gravity};
 }
 
 }  // namespace pellicle::tools

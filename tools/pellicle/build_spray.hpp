@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/momentum_exchange.hpp"
+#include "spray/droplet_gas.hpp"
 #include "spray/spray.hpp"
 #include "tools/pellicle/case_spec.hpp"
 
@@ -9,7 +10,8 @@ namespace pellicle::tools {
 
 spray::SprayOptions make_spray_options(const CaseSpec& spec);
 
-/// Arrays are those of `exchange`, so that parcels see what was sampled last; null without gas.
-spray::ParcelGas make_parcel_gas(const CaseSpec& spec, const coupling::MomentumExchange* exchange);
+/// The gas that parcels fly through; `open_volume` of its cells [m3].
+spray::DropletGas make_droplet_gas(const CaseSpec& spec, const coupling::MomentumExchange& exchange,
+                                   const HostArray<Real>& open_volume, Real largest_parcel_mass);
 
 }  // namespace pellicle::tools

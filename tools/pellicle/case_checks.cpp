@@ -48,6 +48,8 @@ class Checker {
     if (!spec_.particles.empty()) check_periodic_width();
     if (spec_.gas && !spec_.particles.empty()) check_coupling();
     for (const auto& nozzle : spec_.spray) check_nozzle(nozzle);
+    if (spec_.droplets.two_way && !spec_.gas)
+      problems_.add(spec_.where("droplets.momentum"), "there is no gas to push; one_way, or gas");
     for (const auto& line : spec_.output.lines) check_line(line);
     for (const auto& probe : spec_.output.probes) check_probe(probe);
     for (const auto& field : spec_.output.snapshots.gas) {
@@ -601,7 +603,10 @@ class Checker {
     const auto unused = [&](const std::string& path, std::string_view why) {
       if (given(path)) warn(path, fmt::format("of no use: the case has no {}", why));
     };
-    if (spec_.spray.empty()) unused("output.snapshots.spray", "spray");
+    if (spec_.spray.empty()) {
+      unused("output.snapshots.spray", "spray");
+      unused("droplets", "spray");
+    }
     if (spec_.particles.empty()) {
       if (!spec_.gas) unused("walls", "particles and no gas");
       for (const auto* path : {"time.particle_step", "time.impact_speed", "time.settle", "materials",

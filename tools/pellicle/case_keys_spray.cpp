@@ -115,10 +115,24 @@ void describe_nozzle(Keys& keys, NozzleSpec& nozzle) {
       nozzle.capture, describe_capture);
 }
 
+void describe_droplets(Keys& keys, DropletSpec& droplets) {
+  static constexpr core::ModelInfo momenta[] = {
+      {"one_way", "the gas drags droplets and does not feel them"},
+      {"two_way", "the gas gets the opposite of what droplets get"}};
+  std::optional<int> momentum = droplets.two_way ? 1 : 0;
+  keys.choice({"momentum", "whether droplets push the gas"}, momenta, momentum);
+  droplets.two_way = *momentum == 1;
+}
+
 }  // namespace
 
 void describe_spray(Keys& keys, CaseSpec& spec) {
   keys.list<NozzleSpec>({"spray", "nozzles"}, {}, spec.spray, describe_nozzle);
+  std::optional<DropletSpec> held;
+  if (!keys.reading() && !spec.spray.empty()) held = spec.droplets;
+  keys.section<DropletSpec>({"droplets", "what droplets of the spray do in flight besides flying"}, held,
+                            describe_droplets);
+  if (keys.reading() && held) spec.droplets = *held;
 }
 
 }  // namespace pellicle::tools

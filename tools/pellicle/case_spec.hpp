@@ -331,6 +331,11 @@ struct NozzleSpec {
   std::optional<CaptureSpec> capture;
 };
 
+/// What droplets do in flight besides flying.
+struct DropletSpec {
+  bool two_way = false;  ///< they push the gas
+};
+
 /// An interval of simulated time; both ends are filled in.
 struct WindowSpec {
   Real from = 0, to = 0;  ///< [s]
@@ -416,10 +421,10 @@ struct WetnessSpec {
   std::string name;
   std::optional<Box> box;  ///< [m]
   std::optional<dem::CylinderRegion> cylinder;
-  int measure = 0;     ///< a position in `wetness_measures`
-  Real wettest = 0;    ///< upper end of the bins; 0 until defaults are filled in [kg/m2] or [-]
-  Index bins = 20;     ///< of wetness
-  Real fastest = 1;    ///< upper end of the bins of speed [m/s]
+  int measure = 0;   ///< a position in `wetness_measures`
+  Real wettest = 0;  ///< upper end of the bins; 0 until defaults are filled in [kg/m2] or [-]
+  Index bins = 20;   ///< of wetness
+  Real fastest = 1;  ///< upper end of the bins of speed [m/s]
   Index speed_bins = 20;
   int sample = 0;  ///< 0: of each gas step; 1: of each particle step
   Real every = 0;  ///< time between two histograms; 0: only at the end [s]
@@ -451,6 +456,7 @@ struct CaseSpec {
   std::optional<HeatSpec> heat;
   CoatingSpec coating;  ///< of use only where particles have films
   std::vector<NozzleSpec> spray;
+  DropletSpec droplets;  ///< of use only with a spray
   OutputSpec output;
   std::vector<std::string> warnings;  ///< each `file:line: key.path: ...`; the run goes on
   std::map<std::string, std::string>

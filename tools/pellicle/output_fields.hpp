@@ -162,7 +162,8 @@ inline constexpr std::array<core::ModelInfo, 3> plane_quantities{{
 /// What the wetness of a contact is that of, in the order of spray::WetnessMeasure.
 inline constexpr std::array<core::ModelInfo, 2> wetness_measures{{
     {"liquid_per_surface",
-     "liquid over the surface of the bare particle, the thickness of the wet film (1 kg/m2 of water: 1 mm) [kg/m2]"},
+     "liquid over the surface of the bare particle, the thickness of the wet film (1 kg/m2 of water: 1 mm) "
+     "[kg/m2]"},
     {"liquid_fraction", "liquid over liquid and solids of the film [-]"},
 }};
 

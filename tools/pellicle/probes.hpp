@@ -34,10 +34,10 @@ struct OutputState {
   const ParticleColumns* particles = nullptr;  ///< null without particles
   const GasFields* gas = nullptr;              ///< null without gas
   ContactFigures contacts{};
-  const std::vector<WallFigures>* walls = nullptr;  ///< of all walls of the case
-  const SideFigures* sides = nullptr;               ///< null without particles
-  const Zones* zones = nullptr;                     ///< null without particles
-  const spray::Spray* spray = nullptr;              ///< null without a spray
+  const std::vector<WallFigures>* walls = nullptr;              ///< of all walls of the case
+  const SideFigures* sides = nullptr;                           ///< null without particles
+  const Zones* zones = nullptr;                                 ///< null without particles
+  const spray::Spray* spray = nullptr;                          ///< null without a spray
   const std::vector<spray::ContactWetness>* wetness = nullptr;  ///< null without particles
 
   /// Empty without particles.

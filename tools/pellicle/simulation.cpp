@@ -58,7 +58,10 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
   }
   if (particles_ && gas_) exchange_.emplace(make_exchange(spec_, *gas_));
   if (spec_.heat) heat_.emplace(make_heat_options(spec_), gas_->geometry().volume);
-  if (spray_) parcel_gas_ = make_parcel_gas(spec_, exchange_ ? &*exchange_ : nullptr);
+  if (spray_ && exchange_) {
+    droplet_gas_.emplace(
+        make_droplet_gas(spec_, *exchange_, gas_->geometry().volume, spray_->largest_parcel_mass()));
+  }
   for (const WallSpec& wall : spec_.walls) walls_.push_back({wall.name, {}, {}, 0, {}});
   if (particles_) particles_->hold_walls();  // until t = 0
   if (options_.until) time_.end_at(*options_.until);
@@ -97,6 +100,7 @@ void Simulation::resume() {
   if (exchange_ && time_.step() >= 0) exchange_->load(file);
   if (heat_ && time_.step() >= 0) heat_->load(file);
   if (spray_) spray_->load(file);
+  if (droplet_gas_) droplet_gas_->load(file);
   for (spray::ContactWetness& region : wetness_) region.load(file);
   if (surface_ && time_.step() >= 0) {
     settled_left_surface_ = {
@@ -203,7 +207,7 @@ void Simulation::advance_outer_step() {
     sample_gas();
     inject_spray(part, parts);
     move_particles(parts);
-    collect_spray();
+    collect_spray(parts);
     deposit_particles(parts);
     exchange_heat(parts);
     if (!time_.settling()) move_gas(parts);
@@ -303,6 +307,7 @@ void Simulation::move_gas(int parts) {
     const core::Timers::Scope scope(timers_, Part::gas);
     cfd::ParticleExchange felt = exchange_ ? exchange_->exchange() : no_particles_;
     if (heat_) heat_->add_to(felt);
+    if (droplet_gas_) droplet_gas_->add_to(felt);
     summary_.gas.add(gas_->update(dt, felt), dt);
     add_gas_forces(dt);
   }
@@ -460,6 +465,12 @@ void Simulation::update_ledger() {
     sources += gas.body_force + gas.vapour;
     gross += norm(gas.gross);
   }
+  if (summary_.spray.two_way) {
+    stock += summary_.spray.momentum.in_flight;
+    through += summary_.spray.momentum_kept() + summary_.spray.impulses.bounced;
+    sources += summary_.spray.impulses.gravity;
+    gross += norm(summary_.spray.momentum.injected) + norm(summary_.spray.impulses.on_gas);
+  }
   if (exchange_) {
     stock += exchange_->totals().pending;
     gross += exchange_->totals().gross;
@@ -568,6 +579,7 @@ void Simulation::write_checkpoint() {
   if (exchange_ && time_.step() >= 0) exchange_->save(file);
   if (heat_ && time_.step() >= 0) heat_->save(file);
   if (spray_) spray_->save(file);
+  if (droplet_gas_) droplet_gas_->save(file);
   for (const spray::ContactWetness& region : wetness_) region.save(file);
   if (surface_ && time_.step() >= 0) {
     file.write("run/settled_left_liquid", settled_left_surface_.film.liquid);

@@ -17,6 +17,7 @@
 #include "dem/feed.hpp"
 #include "heat/heat_exchange.hpp"
 #include "heat/surface_state.hpp"
+#include "spray/droplet_gas.hpp"
 #include "spray/spray.hpp"
 #include "tools/pellicle/case_spec.hpp"
 #include "tools/pellicle/outputs.hpp"
@@ -60,9 +61,10 @@ class Simulation {
   void feed_particles();
   int choose_parts() const;
   void sample_gas();
+  const spray::ParcelGas& parcel_gas() const { return droplet_gas_ ? droplet_gas_->gas() : no_gas_; }
   void inject_spray(int part, int parts);
   void move_particles(int parts);
-  void collect_spray();
+  void collect_spray(int parts);
   void deposit_particles(int parts);
   void exchange_heat(int parts);
   void move_gas(int parts);
@@ -75,6 +77,7 @@ class Simulation {
   void watch_zones();
   void update_ledger();
   void update_heat_ledger();
+  SprayFigures spray_figures() const;
   void open_spray_ledger();
   void update_spray_ledger();
   dem::SubstepHook substep_hook(int substeps);
@@ -105,7 +108,8 @@ class Simulation {
   std::optional<cfd::GasSolver> gas_;
   std::optional<coupling::MomentumExchange> exchange_;
   std::optional<heat::HeatExchange> heat_;
-  spray::ParcelGas parcel_gas_;               // without gas there is no drag
+  std::optional<spray::DropletGas> droplet_gas_;
+  spray::ParcelGas no_gas_;                   // without gas there is no drag
   DeviceArray<Real> parcel_gas_temperature_;  // with heat [K]
   std::optional<Outputs> outputs_;
 

@@ -11,6 +11,7 @@ using core::Part;
 void Simulation::inject_spray(int part, int parts) {
   if (!spray_ || time_.settling()) return;
   const core::Timers::Scope scope(timers_, Part::spray);
+  if (droplet_gas_) droplet_gas_->sample(gas_->state());
   spray_->inject(time_.time() + part * (time_.gas_step() / parts), time_.substeps() / parts, *particles_);
   Kokkos::fence("tools::simulation_spray::injected");
 }
@@ -28,13 +29,13 @@ dem::SubstepHook Simulation::substep_hook(int substeps) {
     }
     if (!spray_) return;
     const core::Timers::Scope scope(timers_, Part::spray);
-    spray_->move(substep, *particles_, parcel_gas_);
+    if (spray_->move(substep, *particles_, parcel_gas()) && droplet_gas_) droplet_gas_->settle();
     Kokkos::fence("tools::simulation_spray::moved");
   };
 }
 
 /// Hands what was captured to the films.
-void Simulation::collect_spray() {
+void Simulation::collect_spray(int parts) {
   if (!spray_ || time_.settling()) return;
   const core::Timers::Scope scope(timers_, Part::spray);
   if (heat_) {
@@ -46,13 +47,24 @@ void Simulation::collect_spray() {
     }
     Kokkos::deep_copy(parcel_gas_temperature_, temperature);
   }
-  spray_->collect(particles_->particles(), *surface_, parcel_gas_, parcel_gas_temperature_);
+  spray_->collect(particles_->particles(), *surface_, parcel_gas(), parcel_gas_temperature_);
+  if (droplet_gas_) droplet_gas_->close(time_.gas_step() / parts);
   Kokkos::fence("tools::simulation_spray::collected");
+}
+
+SprayFigures Simulation::spray_figures() const {
+  SprayFigures figures;
+  figures.nozzles = spray_->figures();
+  figures.heat = spray_->heat();
+  figures.two_way = spec_.droplets.two_way;
+  figures.momentum = spray_->momentum();
+  if (droplet_gas_) figures.impulses = droplet_gas_->impulses();
+  return figures;
 }
 
 void Simulation::open_spray_ledger() {
   if (!spray_) return;
-  summary_.spray = {spray_->figures(), spray_->heat()};
+  summary_.spray = spray_figures();
   ledger_.open(Conserved::solids, surface_->compute_totals().film.solids);
   if (!has_vapour()) ledger_.open(Conserved::water, water_stock());
 }
@@ -61,7 +73,7 @@ void Simulation::open_spray_ledger() {
 /// Water is that of the gas too where it carries any: see update_heat_ledger.
 void Simulation::update_spray_ledger() {
   if (!spray_) return;
-  summary_.spray = {spray_->figures(), spray_->heat()};
+  summary_.spray = spray_figures();
   const SprayFigures& spray = summary_.spray;
   const heat::Film came = films_that_came();
   const heat::Film film = surface_->compute_totals().film;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "spray/droplet_gas.hpp"
 #include "spray/spray.hpp"
 
 namespace pellicle::tools {
@@ -12,6 +13,14 @@ namespace pellicle::tools {
 struct SprayFigures {
   std::vector<spray::NozzleFigures> nozzles;
   spray::SprayHeat heat;
+  bool two_way = false;  ///< droplets push the gas; only then there is what follows
+  spray::ParcelMomentum momentum;
+  spray::DropletImpulses impulses;
+
+  /// Momentum of droplets that came in and did not go out again [kg m/s].
+  Vec3 momentum_kept() const {
+    return momentum.injected - momentum.captured - momentum.wall_loss - momentum.overspray;
+  }
 
   /// Sum over the nozzles of one of their masses [kg], of its liquid or of its solids.
   Real total(Real spray::NozzleFigures::*mass) const {

@@ -34,11 +34,28 @@ constexpr std::pair<const char*, Real spray::NozzleFigures::*> spray_masses[] = 
     {"in_flight", &spray::NozzleFigures::in_flight},
 };
 
+Json vector_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+/// What droplets did with their momentum, where they push the gas [N s].
+Json momentum_json(const SprayFigures& spray) {
+  Json json;
+  json["injected"] = vector_json(spray.momentum.injected);
+  json["captured"] = vector_json(spray.momentum.captured);
+  json["wall_loss"] = vector_json(spray.momentum.wall_loss);
+  json["overspray"] = vector_json(spray.momentum.overspray);
+  json["in_flight"] = vector_json(spray.momentum.in_flight);
+  json["to_gas"] = vector_json(spray.impulses.on_gas);
+  json["bounced"] = vector_json(spray.impulses.bounced);
+  json["gravity"] = vector_json(spray.impulses.gravity);
+  return json;
+}
+
 Json spray_json(const SprayFigures& spray) {
   Json json;
   for (const auto& [name, mass] : spray_masses) json[name] = spray.total(mass);
   json["enthalpy"] = spray.heat.enthalpy;
   json["free_heat"] = spray.heat.free_heat;
+  if (spray.two_way) json["momentum"] = momentum_json(spray);
   for (const spray::NozzleFigures& nozzle : spray.nozzles) {
     Json& figures = json["nozzles"][nozzle.name];
     for (const auto& [name, mass] : spray_masses) figures[name] = nozzle.*mass;
