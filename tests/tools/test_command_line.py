@@ -40,7 +40,7 @@ output:
 BAD_INPUT = [
     ("unknown key", ("title:", "titel:"),
      "1: titel: unknown key, the nearest is title; known here: title, seed, domain, gravity, time, materials, walls, "
-     "contacts, particles, gas, coupling, heat, coating, spray, output"),
+     "contacts, particles, gas, coupling, heat, coating, spray, droplets, output"),
     ("wrong unit", ('end: "10 ms"', 'end: "10 mm"'),
      '3: time.end: "10 mm" is not a time; a number in s or a string such as "0.1 ms"'),
     ("wrong type", ('diameter: "5 mm"', "diameter: [5, 6]"),
