@@ -95,7 +95,7 @@ TEST(ContactWetness, CollisionsByHand) {
   const WetnessCounts all = counting.regions[0].counts();
   ASSERT_EQ(all.rows, 6);
   ASSERT_EQ(all.columns, 6);
-  const auto at = [](Index row, Index column) { return static_cast<std::size_t>(row * 6 + column); };
+  const auto at = [](std::size_t row, std::size_t column) { return row * 6 + column; };
   EXPECT_EQ(all.pairs[at(2, 3)], 1);  // 0.7 m/s: 0.6 to 0.8
   EXPECT_EQ(total(all.pairs), 1);
   EXPECT_EQ(all.walls[at(0, 2)], 1);  // dry, 0.5 m/s: 0.4 to 0.6
