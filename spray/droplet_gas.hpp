@@ -59,8 +59,8 @@ class DropletGas {
   DeviceArray<Real> mass_;      // of the gas in a cell [kg]
   HostArray<CellGains> sum_host_;
   HostArray<Real> volume_, mass_host_;
-  HostArray<Vec3> force_, total_force_;               // per volume [N/m3]
-  std::array<core::ExactSum, 9> impulse_;             // on_gas, bounced, gravity
+  HostArray<Vec3> force_, total_force_;    // per volume [N/m3]
+  std::array<core::ExactSum, 9> impulse_;  // on_gas, bounced, gravity
 };
 
 }  // namespace pellicle::spray

@@ -96,8 +96,8 @@ TEST(DropletGas, TotalMomentumIsConstantAndTheGasDoesNotOvershoot) {
       const ParcelMomentum p = rig.spray.momentum();
       mass = rig.spray.figures()[0].injected;
       const Real scale = mass * 10;
-      const Vec3 total = gas.momentum() + p.in_flight - droplets.impulses().gravity - p.injected +
-                         p.captured + p.overspray;
+      const Vec3 total =
+          gas.momentum() + p.in_flight - droplets.impulses().gravity - p.injected + p.captured + p.overspray;
       ASSERT_LT(norm(total), 1e-13 * scale) << k;
       // What the gas has is what droplets gave.
       ASSERT_LT(norm(gas.momentum() - droplets.impulses().on_gas), 1e-13 * scale);
@@ -148,7 +148,8 @@ TEST(DropletGas, EachCellGetsWhatDropletsLoseThere) {
   for (Index c = 3; c < 5; ++c) {
     const Real got = gas.mass(c) * gas.state.velocity(c).x;
     // Drag that begins each move of 0.1 ms as it ends the last: first order in 0.1 ms / 2.3 ms.
-    EXPECT_NEAR(got, expected[static_cast<std::size_t>(c)], 0.08 * expected[static_cast<std::size_t>(c)]) << c;
+    EXPECT_NEAR(got, expected[static_cast<std::size_t>(c)], 0.08 * expected[static_cast<std::size_t>(c)])
+        << c;
     all += got;
   }
   EXPECT_GT(all, 0.8 * 20 * mass);
