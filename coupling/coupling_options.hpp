@@ -54,6 +54,12 @@ struct GasProperties {
   Real density = 0;    ///< [kg/m3]
   Real viscosity = 0;  ///< dynamic [Pa s]
   Vec3 gravity;        ///< for the buoyancy of the particles [m/s2]
+  /// Drag feels the density of each cell's gas. Buoyancy stays that of `density`: what lighter gas changes of it is in the
+  /// pressure gradient, since the pressure is without the hydrostatic part of `density`.
+  bool density_varies = false;
+  bool sutherland = false;  ///< the viscosity is that of air at the cell's temperature
+
+  bool vary() const { return density_varies || sutherland; }
 };
 
 /// Transfer grid of about cubic cells over the gas grid's box: along each axis the whole number of cells whose size is

@@ -21,6 +21,20 @@ struct alignas(64) SampledGas {
   Real void_fraction = 1;
 };
 
+/// What drag feels of the gas.
+struct LocalGas {
+  Real density = 0;    ///< [kg/m3]
+  Real viscosity = 0;  ///< dynamic [Pa s]
+  KOKKOS_INLINE_FUNCTION LocalGas& operator+=(const LocalGas& b) {
+    density += b.density;
+    viscosity += b.viscosity;
+    return *this;
+  }
+  friend KOKKOS_INLINE_FUNCTION LocalGas operator*(Real s, const LocalGas& a) {
+    return {s * a.density, s * a.viscosity};
+  }
+};
+
 /// What the gas gave to one particle since the start of the gas step; in half a cache line.
 struct alignas(32) Received {
   Vec3 drag_impulse;  ///< [N s]
@@ -55,15 +69,16 @@ struct FixedCoefficientForce {
 /// Fluid force whose momentum exchange coefficient follows the particle's velocity.
 struct FollowingCoefficientForce {
   FixedCoefficientForce fixed;
-  Real gas_density;    ///< [kg/m3]
-  Real gas_viscosity;  ///< [Pa s]
-  int law;             ///< position in the list of drag laws
+  LocalGas uniform;
+  DeviceArray<LocalGas> local;  ///< of every particle; empty where the gas is uniform
+  int law;                      ///< position in the list of drag laws
 
   KOKKOS_INLINE_FUNCTION Vec3 operator()(Index p, const Vec3& velocity, Real dt) const {
     const SampledGas g = fixed.gas(p);
     const Vec3 slip = g.velocity - velocity;
-    const ParticleFlow flow{g.void_fraction, norm(slip), 2 * fixed.position_radius(p).radius, gas_density,
-                            gas_viscosity};
+    const LocalGas around = local.extent(0) > 0 ? local(p) : uniform;
+    const ParticleFlow flow{g.void_fraction, norm(slip), 2 * fixed.position_radius(p).radius, around.density,
+                            around.viscosity};
     return fixed.add_drag(p, dt, g, (fixed.volume(p) * momentum_exchange_coefficient(law, flow)) * slip);
   }
 };

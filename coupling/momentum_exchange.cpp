@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cfd/flow_geometry.hpp"
+#include "cfd/gas_property_laws.hpp"
 #include "core/checkpoint.hpp"
 #include "core/error.hpp"
 
@@ -31,7 +32,8 @@ struct ComputeCoefficients {
   DeviceArray<Real> void_fraction;
   DeviceArray<SampledGas> sampled;
   DeviceArray<Received> received;
-  Real gas_density, gas_viscosity;
+  LocalGas uniform;
+  DeviceArray<LocalGas> local, sampled_local;
   bool pressure_gradient_force;
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
@@ -42,8 +44,10 @@ struct ComputeCoefficients {
     g.void_fraction = transfer.sample(p, void_fraction);
     if (pressure_gradient_force) g.pressure_force = -volume * gas.sample(p, gas_pressure_gradient);
     const Real slip_speed = norm(g.velocity - particles.velocity_spin(p).velocity());
+    const LocalGas around = local.extent(0) > 0 ? gas.sample(p, local) : uniform;
     g.drag_coefficient =
-        volume * law(ParticleFlow{g.void_fraction, slip_speed, 2 * radius, gas_density, gas_viscosity});
+        volume * law(ParticleFlow{g.void_fraction, slip_speed, 2 * radius, around.density, around.viscosity});
+    if (sampled_local.extent(0) > 0) sampled_local(p) = around;
     sampled(p) = g;
     received(p) = Received{};
   }
@@ -186,6 +190,10 @@ MomentumExchange::MomentumExchange(const CouplingOptions& options, const Cartesi
   const Index cells = transfer.cell_count(), gas_cells = gas.cell_count();
   gas_velocity_ = make_device<Vec3>("coupling::momentum_exchange::gas_velocity", gas_cells);
   gas_pressure_gradient_ = make_device<Vec3>("coupling::momentum_exchange::gas_pressure_gradient", gas_cells);
+  if (properties_.vary()) {
+    local_gas_ = make_device<LocalGas>("coupling::momentum_exchange::local_gas", gas_cells);
+    local_gas_host_ = make_host<LocalGas>("coupling::momentum_exchange::local_gas_host", gas_cells);
+  }
   void_fraction_ = make_device<Real>("coupling::momentum_exchange::void_fraction", cells);
   cell_load_ = make_device<CellLoad>("coupling::momentum_exchange::cell_load", cells);
   cell_load_host_ = make_host<CellLoad>("coupling::momentum_exchange::cell_load_host", cells);
@@ -216,6 +224,9 @@ void MomentumExchange::allocate_particles(Index count) {
   if (sampled_.extent(0) >= static_cast<std::size_t>(count) && sampled_.extent(0) > 0) return;
   sampled_ = make_device<SampledGas>("coupling::momentum_exchange::sampled", count);
   received_ = make_device<Received>("coupling::momentum_exchange::received", count);
+  if (properties_.vary() && options_.coefficients == Coefficients::substep) {
+    sampled_local_ = make_device<LocalGas>("coupling::momentum_exchange::sampled_local", count);
+  }
   const Index blocks = (count + fixed_block - 1) / fixed_block;
   fixed_impulse_ = make_device<Vec3>("coupling::momentum_exchange::fixed_impulse", blocks);
   fixed_impulse_host_ = make_host<Vec3>("coupling::momentum_exchange::fixed_impulse_host", blocks);
@@ -234,9 +245,17 @@ void MomentumExchange::initialise(const dem::Particles& particles) {
   map_to_gas();
 }
 
-void MomentumExchange::sample_gas(const HostArray<Vec3>& velocity, const HostArray<Vec3>& pressure_gradient) {
+void MomentumExchange::sample_gas(const HostArray<Vec3>& velocity, const HostArray<Vec3>& pressure_gradient,
+                                  const HostArray<Real>& density, const HostArray<Real>& temperature) {
   Kokkos::deep_copy(gas_velocity_, velocity);
   Kokkos::deep_copy(gas_pressure_gradient_, pressure_gradient);
+  if (!properties_.vary()) return;
+  const GasProperties& gas = properties_;
+  for (Index c = 0; c < gas_.cell_count(); ++c) {
+    local_gas_host_(c) = {gas.density_varies ? density(c) : gas.density,
+                          gas.sutherland ? cfd::sutherland_viscosity(temperature(c)) : gas.viscosity};
+  }
+  Kokkos::deep_copy(local_gas_, local_gas_host_);
 }
 
 void MomentumExchange::compute_coefficients(const dem::Particles& particles) {
@@ -246,9 +265,20 @@ void MomentumExchange::compute_coefficients(const dem::Particles& particles) {
   const FootprintView& gas = one_grid_ ? transfer : gas_footprint_.view();
   std::visit(
       [&](const auto& law) {
-        compute_coefficients_with(ComputeCoefficients<std::decay_t<decltype(law)>>{
-            law, particles, transfer, gas, gas_velocity_, gas_pressure_gradient_, void_fraction_, sampled_,
-            received_, properties_.density, properties_.viscosity, options_.pressure_gradient_force});
+        compute_coefficients_with(
+            ComputeCoefficients<std::decay_t<decltype(law)>>{law,
+                                                             particles,
+                                                             transfer,
+                                                             gas,
+                                                             gas_velocity_,
+                                                             gas_pressure_gradient_,
+                                                             void_fraction_,
+                                                             sampled_,
+                                                             received_,
+                                                             {properties_.density, properties_.viscosity},
+                                                             local_gas_,
+                                                             sampled_local_,
+                                                             options_.pressure_gradient_force});
       },
       options_.drag);
 }
@@ -258,7 +288,9 @@ FluidForce MomentumExchange::fluid_force(const dem::Particles& particles) const 
       options_.pressure_gradient_force ? -properties_.density * properties_.gravity : Vec3{};
   const FixedCoefficientForce fixed{sampled_, received_, particles.position_radius, buoyancy};
   if (options_.coefficients == Coefficients::gas_step) return fixed;
-  return FollowingCoefficientForce{fixed, properties_.density, properties_.viscosity,
+  return FollowingCoefficientForce{fixed,
+                                   {properties_.density, properties_.viscosity},
+                                   sampled_local_,
                                    static_cast<int>(options_.drag.index())};
 }
 

@@ -52,8 +52,10 @@ class MomentumExchange {
   /// Throws RunError if the particles do not fit under the bound of the void fraction.
   void initialise(const dem::Particles& particles);
 
-  /// Copies gas velocity [m/s] and pressure gradient [Pa/m] of the gas grid's cells to the device.
-  void sample_gas(const HostArray<Vec3>& velocity, const HostArray<Vec3>& pressure_gradient);
+  /// Copies gas velocity [m/s] and pressure gradient [Pa/m] of the gas grid's cells to the device; density [kg/m3] and
+  /// temperature [K] too, where the gas's properties vary with them.
+  void sample_gas(const HostArray<Vec3>& velocity, const HostArray<Vec3>& pressure_gradient,
+                  const HostArray<Real>& density = {}, const HostArray<Real>& temperature = {});
 
   /// Per particle: gas velocity, pressure gradient and void fraction where it is, and its drag coefficient; sets what
   /// it has received to zero. The order of particles must not change from here to deposit.
@@ -84,6 +86,8 @@ class MomentumExchange {
   bool has_one_grid() const { return one_grid_; }
   /// Gas velocity of the gas grid's cells as sampled last [m/s].
   const DeviceArray<Vec3>& gas_velocity() const { return gas_velocity_; }
+  /// Density and viscosity likewise; empty where they do not vary.
+  const DeviceArray<LocalGas>& local_gas() const { return local_gas_; }
   /// The gas grid on the device.
   const GridLocator& gas_locator() const {
     return one_grid_ ? transfer_footprint_.grid() : gas_footprint_.grid();
@@ -121,6 +125,8 @@ class MomentumExchange {
   VoidFractionBound bound_;
   Smoothing smoothing_;
   DeviceArray<Vec3> gas_velocity_, gas_pressure_gradient_;
+  DeviceArray<LocalGas> local_gas_,
+      sampled_local_;  // of cells, of particles; empty where they are not needed
   DeviceArray<Real> void_fraction_;
   DeviceArray<SampledGas> sampled_;
   DeviceArray<Received> received_;
@@ -132,6 +138,7 @@ class MomentumExchange {
   GridMapping to_gas_, to_transfer_;
   HostArray<CellLoad> cell_load_host_;
   HostArray<Vec3> fixed_impulse_host_;
+  HostArray<LocalGas> local_gas_host_;
   HostArray<Real> void_fraction_host_;    // transfer grid
   HostArray<Real> solids_, coefficient_;  // transfer grid, per volume
   HostArray<Vec3> force_;                 // transfer grid, explicit force with release [N/m3]

@@ -113,6 +113,40 @@ TEST(MomentumExchange, ForceOnOneParticleByHand) {
   }
 }
 
+// Where properties vary, drag is that of the gas in the particle's cells: here thin and hot, elsewhere different. Buoyancy stays that of the reference density.
+TEST(MomentumExchange, DragFeelsTheGasOfTheParticlesCells) {
+  const CartesianGrid grid(box, {3, 2, 6});
+  const Vec3 u{2, 0, 1}, v{1, 0, 0.5};
+  for (const Coefficients coefficients : {Coefficients::gas_step, Coefficients::substep}) {
+    CouplingOptions options;
+    options.drag = WenYu{};
+    options.coefficients = coefficients;
+    GasProperties varying = air;
+    varying.density_varies = varying.sutherland = true;
+    MomentumExchange exchange(options, grid, grid, varying);
+    const dem::Particles particles = make_particles({{{0.015, 0.015, 0.025}, 2e-3, v}});
+    exchange.initialise(particles);
+    cfd::GasState gas = make_gas(grid);
+    Kokkos::deep_copy(gas.velocity, u);
+    const HostArray<Real> gas_density("tests::momentum_exchange::density", 36);
+    const HostArray<Real> temperature("tests::momentum_exchange::temperature", 36);
+    Kokkos::deep_copy(gas_density, 5);
+    Kokkos::deep_copy(temperature, 1000);
+    gas_density(grid.index(1, 1, 2)) = 0.5;
+    temperature(grid.index(1, 1, 2)) = 500;
+    exchange.sample_gas(gas.velocity, gas.pressure_gradient, gas_density, temperature);
+    exchange.compute_coefficients(particles);
+    const auto impulse = run_substeps(exchange, particles, 2, 1e-5);
+    const Real mu = 2.6705333e-5;  // U.S. Standard Atmosphere: 1.458e-6 T^1.5 / (T + 110.4)
+    const Real volume = sphere_volume(2e-3), eps = 1 - volume / 1e-6, slip = std::sqrt(1.25);
+    const Real re = 0.5 * eps * 4e-3 * slip / mu;
+    const Real k =
+        0.75 * 24 / re * (1 + 0.15 * std::pow(re, 0.687)) * 0.5 * std::pow(eps, -1.65) * slip / 4e-3;
+    const Vec3 force = volume * k * (u - v) + Vec3{0, 0, volume * density * 9.81};
+    expect_near(impulse[0], 2e-5 * force, 1e-7 * 2e-5 * norm(force));  // digits of mu
+  }
+}
+
 // With coefficients `substep`, K follows the particle: its impulse differs from that with a fixed K as the law says.
 TEST(MomentumExchange, CoefficientFollowsTheParticleEverySubstep) {
   const CartesianGrid grid(box, {3, 2, 6});

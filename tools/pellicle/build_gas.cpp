@@ -224,8 +224,10 @@ cfd::GasSolver make_gas_solver(const CaseSpec& spec, const std::vector<dem::Wall
 }
 
 coupling::MomentumExchange make_exchange(const CaseSpec& spec, const cfd::GasSolver& gas) {
-  const coupling::GasProperties properties{spec.gas->options.density, spec.gas->options.viscosity,
-                                           spec.gravity};
+  const cfd::GasOptions& options = spec.gas->options;
+  const coupling::GasProperties properties{options.density, options.viscosity, spec.gravity,
+                                           options.density_law != cfd::DensityLaw::constant,
+                                           options.viscosity_law == cfd::ViscosityLaw::sutherland};
   try {
     return {make_coupling_options(spec), make_grid(spec.coupling.transfer_grid, spec.domain), gas.grid(),
             properties, &gas.geometry()};

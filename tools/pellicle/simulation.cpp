@@ -271,7 +271,9 @@ void Simulation::sample_gas() {
   }
   if (!coupled()) return;
   const core::Timers::Scope scope(timers_, Part::coupling);
-  exchange_->sample_gas(gas_->state().velocity, gas_->state().pressure_gradient);
+  const cfd::GasState& gas = gas_->state();
+  exchange_->sample_gas(gas.velocity, gas.pressure_gradient, gas.density,
+                        gas.scalars[index_of(cfd::Scalar::temperature)]);
   exchange_->compute_coefficients(particles_->particles());
 }
 
