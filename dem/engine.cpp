@@ -50,7 +50,8 @@ void Engine::set_particles(const std::vector<ParticleSeed>& seeds) {
   left_ = 0;
   left_by_side_ = {};
   entered_mass_ = left_mass_ = 0;
-  entered_momentum_ = left_momentum_ = gravity_impulse_ = Vec3{};
+  entered_momentum_ = left_momentum_ = gravity_impulse_ = grown_momentum_ = Vec3{};
+  grown_mass_ = 0;
   volume_time_ = 0;
   next_id_ = 0;
   one_particle_material_ = true;

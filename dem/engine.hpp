@@ -104,6 +104,9 @@ class Engine {
   /// must be as announced in `EngineSetup::later`. Memory grows by a quarter now and then.
   void add_particles(const std::vector<ParticleSeed>& seeds);
 
+  /// Between two outer steps: gives every particle a mass [kg], in their present order. Velocities stay.
+  void set_masses(const DeviceArray<Real>& mass);
+
   /// Before the substeps of an outer step: removes particles that left through open sides (counted), stops the run if
   /// one is where it cannot be, and re-sorts memory in space now and then. May reorder the particle arrays.
   void prepare_outer_step();
@@ -150,6 +153,8 @@ class Engine {
   /// Cells of the last list build and the particles sorted into them: visit_runs around a place finds all particles that
   /// may be near it now, as long as lists are valid (within before_motion). Null before there are particles.
   const NeighbourSearch* search() const { return search_.empty() ? nullptr : &search_.front(); }
+  /// The pairs that may touch, as of the last substep; indices are those of the particles until they are reordered.
+  const NeighbourList& neighbours() const { return list_; }
   /// Where walls are in this substep, and what they are made of.
   const WallSystem& walls() const { return walls_; }
   ParticleTotals compute_totals() const;
@@ -159,6 +164,9 @@ class Engine {
   /// Mass of the moving particles that were added and that left through open sides so far [kg].
   Real entered_mass() const { return entered_mass_; }
   Real left_mass() const { return left_mass_; }
+  /// What changes of mass have added to the moving particles so far [kg], and to their momentum, like that of the totals.
+  Real grown_mass() const { return grown_mass_; }
+  const Vec3& grown_momentum() const { return grown_momentum_; }
   /// Momentum that added particles brought in so far, like that of the totals [kg m/s].
   const Vec3& entered_momentum() const { return entered_momentum_; }
   /// Momentum that particles took out through open sides so far [kg m/s].
@@ -220,6 +228,8 @@ class Engine {
   DeviceArray<SideTotals> leaving_;        // of one outer step
   Real entered_mass_ = 0, left_mass_ = 0;  // [kg]
   Vec3 entered_momentum_{};
+  Real grown_mass_ = 0;  // [kg]
+  Vec3 grown_momentum_{};
   Vec3 left_momentum_{};
   Vec3 gravity_impulse_{};
   Real volume_time_ = 0;

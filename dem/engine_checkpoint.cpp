@@ -18,6 +18,8 @@ void Engine::save(core::CheckpointWriter& file) const {
   file.write("dem/left_mass", left_mass_);
   file.write("dem/entered_mass", entered_mass_);
   file.write("dem/entered_momentum", entered_momentum_);
+  file.write("dem/grown_mass", grown_mass_);
+  file.write("dem/grown_momentum", grown_momentum_);
   file.write("dem/next_id", std::int64_t{next_id_});
   file.write("dem/gravity_impulse", gravity_impulse_);
   file.write("dem/volume_time", volume_time_);
@@ -54,6 +56,8 @@ void Engine::load(core::CheckpointReader& file) {
   left_mass_ = file.read_double("dem/left_mass");
   entered_mass_ = file.read_double("dem/entered_mass");
   entered_momentum_ = file.read_vec3("dem/entered_momentum");
+  grown_mass_ = file.read_double("dem/grown_mass");
+  grown_momentum_ = file.read_vec3("dem/grown_momentum");
   next_id_ = static_cast<std::int32_t>(file.read_int64("dem/next_id"));
   gravity_impulse_ = file.read_vec3("dem/gravity_impulse");
   volume_time_ = file.read_double("dem/volume_time");

@@ -302,9 +302,8 @@ void HeatExchange::update(const dem::Particles& particles, const coupling::Momen
   copy_gas(gas);
   const coupling::CellRows rows = find_rows(exchange);
   const coupling::FootprintView& footprint = exchange.gas_footprint().view();
-  const ParticleView view{
-      particles,     surface.temperature(), surface.film(), surface.heat_capacity(), surface.capacities(),
-      options_.water};
+  const ParticleView view{surface.bare(particles), surface.temperature(), surface.film(),
+                          surface.heat_capacity(), surface.capacities(),  options_.water};
   const DeviceRange all(0, particles.count), cells(0, cells_);
   const Surroundings around{view,
                             footprint,

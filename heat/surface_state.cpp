@@ -42,15 +42,26 @@ struct Begin {
   }
 };
 
+struct AddFilms {
+  DeviceArray<Real> bare;
+  DeviceArray<Film> film;
+  DeviceArray<Real> whole;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
+    whole(p) = bare(p) + film(p).liquid + film(p).solids;
+  }
+};
+
 }  // namespace
 
 SurfaceState::SurfaceState(const dem::Particles& particles, const std::vector<Real>& heat_capacity,
-                           const HeatCapacities& capacities, Real initial_temperature)
+                           const HeatCapacities& capacities, Real initial_temperature, FilmGrowth growth)
     : particles_(particles),
       heat_capacity_("heat::surface_state::heat_capacity", heat_capacity.size()),
       capacities_(capacities),
       temperature_("heat::surface_state::temperature", "heat/temperature", initial_temperature),
       film_("heat::surface_state::film", "heat/film"),
+      growth_(growth),
+      bare_mass_("heat::surface_state::bare_mass", "heat/bare_mass"),
       newcomer_{initial_temperature, {}} {
   const auto host = Kokkos::create_mirror_view(heat_capacity_);
   std::copy(heat_capacity.begin(), heat_capacity.end(), host.data());
@@ -74,6 +85,25 @@ void SurfaceState::set_by_id(const std::vector<Real>& temperature, const std::ve
   Kokkos::deep_copy(device_film, host_film);
 }
 
+void SurfaceState::note_bare_masses() {
+  if (growth_ == FilmGrowth::none || particles_.count == 0) return;
+  const std::pair<Index, Index> range(0, particles_.count);
+  Kokkos::deep_copy(Kokkos::subview(bare_mass_.values(), range), Kokkos::subview(particles_.mass, range));
+}
+
+void SurfaceState::grow(dem::Engine& engine) {
+  const Index count = particles_.count;
+  if (growth_ == FilmGrowth::none || count == 0) return;
+  if (whole_mass_.extent(0) < static_cast<std::size_t>(count)) {
+    whole_mass_ =
+        DeviceArray<Real>(Kokkos::view_alloc("heat::surface_state::whole_mass", Kokkos::WithoutInitializing),
+                          static_cast<std::size_t>(count + count / 4));
+  }
+  Kokkos::parallel_for("heat::surface_state::add_films", DeviceRange(0, count),
+                       AddFilms{bare_mass_.values(), film(), whole_mass_});
+  engine.set_masses(whole_mass_);
+}
+
 SurfaceTotals SurfaceState::sum(Index first, Index last, const DeviceArray<std::int32_t>& order) const {
   SurfaceTotals total;
   if (last <= first) return total;
@@ -82,8 +112,8 @@ SurfaceTotals SurfaceState::sum(Index first, Index last, const DeviceArray<std::
       Kokkos::view_alloc("heat::surface_state::sums", Kokkos::WithoutInitializing),
       static_cast<std::size_t>(blocks));
   Kokkos::parallel_for("heat::surface_state::sum", DeviceRange(0, blocks),
-                       SumSurface{first, last, order, temperature(), particles_.mass, heat_capacity_, film(),
-                                  particles_.velocity_spin, capacities_, result});
+                       SumSurface{first, last, order, temperature(), bare(particles_).mass, heat_capacity_,
+                                  film(), particles_.velocity_spin, capacities_, result});
   const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, result);
   for (Index b = 0; b < blocks; ++b) total += host(b);
   return total;
@@ -94,12 +124,18 @@ SurfaceTotals SurfaceState::compute_totals() const { return sum(0, particles_.co
 void SurfaceState::reset(Index count) {
   temperature_.reset(count);
   film_.reset(count);
+  if (growth_ != FilmGrowth::none) bare_mass_.reset(count);
   left_ = entered_ = {};
 }
 
 void SurfaceState::add(Index first, Index count) {
   temperature_.add(first, count);
   film_.add(first, count);
+  if (growth_ != FilmGrowth::none) {
+    bare_mass_.add(first, count);
+    const std::pair<Index, Index> range(first, first + count);
+    Kokkos::deep_copy(Kokkos::subview(bare_mass_.values(), range), Kokkos::subview(particles_.mass, range));
+  }
   Kokkos::parallel_for("heat::surface_state::begin", DeviceRange(first, first + count),
                        Begin{newcomer_, particles_.mass, temperature(), film()});
   entered_ += sum(first, first + count);
@@ -110,11 +146,13 @@ void SurfaceState::reorder(const DeviceArray<std::int32_t>& order, Index before,
   left_ += sum(count, before, order);
   temperature_.reorder(order, before, count, scratch);
   film_.reorder(order, before, count, scratch);
+  if (growth_ != FilmGrowth::none) bare_mass_.reorder(order, before, count, scratch);
 }
 
 void SurfaceState::save(core::CheckpointWriter& file, Index count) const {
   temperature_.save(file, count);
   film_.save(file, count);
+  if (growth_ != FilmGrowth::none) bare_mass_.save(file, count);
   for (const auto& [name, totals] : {std::pair("left", left_), std::pair("entered", entered_)}) {
     const std::string path = std::string("heat/") + name;
     file.write(path + "_liquid", totals.film.liquid);
@@ -126,6 +164,7 @@ void SurfaceState::save(core::CheckpointWriter& file, Index count) const {
 void SurfaceState::load(const core::CheckpointReader& file, Index count) {
   temperature_.load(file, count);
   film_.load(file, count);
+  if (growth_ != FilmGrowth::none) bare_mass_.load(file, count);
   for (const auto& [name, totals] : {std::pair("left", &left_), std::pair("entered", &entered_)}) {
     const std::string path = std::string("heat/") + name;
     totals->film.liquid = file.read_double(path + "_liquid");

@@ -6,7 +6,9 @@
 #include "core/types.hpp"
 #include "core/views.hpp"
 #include "dem/companion.hpp"
+#include "dem/engine.hpp"
 #include "dem/particles.hpp"
+#include "heat/film_growth.hpp"
 
 namespace pellicle::heat {
 
@@ -53,7 +55,8 @@ class SurfaceState final : public dem::Companion {
  public:
   /// `particles` is that of the engine it is attached to; `heat_capacity` of each material [J/kg/K].
   SurfaceState(const dem::Particles& particles, const std::vector<Real>& heat_capacity,
-               const HeatCapacities& capacities, Real initial_temperature);
+               const HeatCapacities& capacities, Real initial_temperature,
+               FilmGrowth growth = FilmGrowth::none);
 
   const DeviceArray<Real>& temperature() const { return temperature_.values(); }  ///< [K]
   const DeviceArray<Film>& film() const { return film_.values(); }                ///< [kg]
@@ -62,6 +65,16 @@ class SurfaceState final : public dem::Companion {
 
   /// Temperature [K] and film [kg] of every particle by its id; to be called after the particles were set.
   void set_by_id(const std::vector<Real>& temperature, const std::vector<Film>& film);
+
+  /// Takes the masses that particles have now for those without films; to be called after the particles were set.
+  void note_bare_masses();
+  /// The particles with the masses that they have without films, which are what enthalpies count.
+  dem::Particles bare(dem::Particles particles) const {
+    if (growth_ != FilmGrowth::none) particles.mass = bare_mass_.values();
+    return particles;
+  }
+  /// With FilmGrowth::mass: gives the engine's particles the mass of their films too.
+  void grow(dem::Engine& engine);
 
   /// What particles that are added from here on begin with; until the first call, the initial temperature and no film.
   void expect(const Newcomer& newcomer) { newcomer_ = newcomer; }
@@ -77,7 +90,9 @@ class SurfaceState final : public dem::Companion {
                const DeviceArray<Real>& scratch) override;
   void save(core::CheckpointWriter& file, Index count) const override;
   void load(const core::CheckpointReader& file, Index count) override;
-  std::size_t bytes() const override { return temperature_.bytes() + film_.bytes(); }
+  std::size_t bytes() const override {
+    return temperature_.bytes() + film_.bytes() + (growth_ != FilmGrowth::none ? bare_mass_.bytes() : 0);
+  }
 
  private:
   /// Over entries first to last - 1, or those that `order` names there unless it is empty.
@@ -88,6 +103,9 @@ class SurfaceState final : public dem::Companion {
   HeatCapacities capacities_;
   dem::FollowingArray<Real> temperature_;
   dem::FollowingArray<Film> film_;
+  FilmGrowth growth_;
+  dem::FollowingArray<Real> bare_mass_;  // in use if films add to it
+  DeviceArray<Real> whole_mass_;         // likewise, free between uses
   Newcomer newcomer_;
   SurfaceTotals left_, entered_;
 };

@@ -271,14 +271,8 @@ void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& s
   aside_.count = 0;
   if (captured == 0) return;
   hits_.sort(captured);
-  HitTargets targets{particles,
-                     surface.film(),
-                     records_.values(),
-                     {},
-                     surface.heat_capacity(),
-                     surface.capacities(),
-                     gas_temperature,
-                     nozzle_temperature_};
+  HitTargets targets{surface.bare(particles), surface.film(),       records_.values(), {},
+                     surface.heat_capacity(), surface.capacities(), gas_temperature,   nozzle_temperature_};
   const bool warm = gas_temperature.extent(0) > 0;
   if (warm) targets.temperature = surface.temperature();
   add_hits(hits_.hits(), captured, targets);

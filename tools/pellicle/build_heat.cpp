@@ -1,6 +1,7 @@
 #include "tools/pellicle/build_heat.hpp"
 
 #include "core/model_variant.hpp"
+#include "dem/normal_laws.hpp"
 #include "tools/pellicle/case_checks.hpp"
 
 namespace pellicle::tools {
@@ -38,6 +39,23 @@ heat::HeatOptions make_heat_options(const CaseSpec& spec) {
   return options;
 }
 
+// The true modulus matters where contacts are Hertz's: linear springs know none.
+heat::ConductionOptions make_conduction_options(const CaseSpec& spec) {
+  heat::ConductionOptions options;
+  const bool hertz = spec.contacts.normal == dem::Hertz::info.name;
+  for (const MaterialSpec& m : spec.materials) {
+    const Real factor = 1 / (1 - m.poisson_ratio * m.poisson_ratio);
+    heat::ConductingSolid solid{m.conductivity.value_or(0), 0, 0};
+    if (!m.rigid && hertz) {
+      solid.modulus = factor * m.youngs_modulus;
+      solid.true_modulus = factor * m.true_youngs_modulus.value_or(m.youngs_modulus);
+    }
+    options.solids.push_back(solid);
+  }
+  for (const WallSpec& wall : spec.walls) options.wall_temperature.push_back(wall.temperature);
+  return options;
+}
+
 heat::SurfaceState make_surface(const CaseSpec& spec, const dem::Particles& particles) {
   std::vector<Real> capacities;
   for (const MaterialSpec& material : spec.materials)
@@ -46,10 +64,11 @@ heat::SurfaceState make_surface(const CaseSpec& spec, const dem::Particles& part
   film.liquid = spec.coating.liquid_heat_capacity;
   film.solids = spec.coating.solids_heat_capacity;
   // With films alone temperatures are of no use.
-  if (!spec.heat) return {particles, capacities, film, film.reference_temperature};
+  const heat::FilmGrowth growth = spec.coating.growth;
+  if (!spec.heat) return {particles, capacities, film, film.reference_temperature, growth};
   const GasHeatSpec& gas = *spec.gas->heat;
   film.reference_temperature = gas.reference_temperature.value_or(gas.initial_temperature);
-  return {particles, capacities, film, *spec.heat->initial_temperature};
+  return {particles, capacities, film, *spec.heat->initial_temperature, growth};
 }
 
 Real initial_temperature(const CaseSpec& spec, const PopulationSpec& population) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dem/engine.hpp"
+#include "heat/contact_conduction.hpp"
 #include "heat/heat_options.hpp"
 #include "heat/surface_state.hpp"
 #include "tools/pellicle/case_spec.hpp"
@@ -12,6 +13,9 @@ namespace pellicle::tools {
 
 /// Of a case with heat.
 heat::HeatOptions make_heat_options(const CaseSpec& spec);
+
+/// Of a case with heat.contact_conduction.
+heat::ConductionOptions make_conduction_options(const CaseSpec& spec);
 
 /// Of a case with heat or spray; for the engine whose particles these are.
 heat::SurfaceState make_surface(const CaseSpec& spec, const dem::Particles& particles);

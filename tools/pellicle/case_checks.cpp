@@ -462,9 +462,10 @@ class Checker {
     const bool of_spray = name == "hits" || name.ends_with("hit_time");
     wrong(where, key,
           fmt::format("{} needs {}, which the case has not; another name", name,
-                      of_heat    ? "heat"
-                      : of_spray ? "spray"
-                                 : "heat or spray"));
+                      name.starts_with("wall_heat") ? "heat.contact_conduction"
+                      : of_heat                     ? "heat"
+                      : of_spray                    ? "spray"
+                                                    : "heat or spray"));
   }
 
   /// Temperature and moisture are there only if the gas has them.
@@ -585,6 +586,12 @@ class Checker {
     const bool is_seen = spec_.gas && (wall->box || wall->gas != GasWall::open);
     for (const auto& name : probe.quantities) {
       const bool of_gas = name.starts_with("gas_force");
+      const bool of_heat = name.starts_with("wall_heat");
+      if (of_heat) check_followed(probe.where, "quantities", name);
+      if (of_heat && spec_.follows(name) && !wall->temperature) {
+        wrong(probe.where, "quantities",
+              fmt::format("{} needs a wall with a temperature; another wall or quantity", name));
+      }
       if (of_gas && !is_seen) {
         wrong(probe.where, "quantities",
               fmt::format("{} needs a wall that the gas sees; another wall or quantity", name));

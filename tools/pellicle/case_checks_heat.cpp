@@ -25,9 +25,31 @@ void check_evaporation(const CaseSpec& spec, core::InputProblems& problems) {
   }
 }
 
+/// What conducts, and keys that would do nothing.
+void check_conduction(const CaseSpec& spec, core::InputProblems& problems) {
+  const bool conducts = spec.heat && spec.heat->contact_conduction;
+  for (const WallSpec& wall : spec.walls) {
+    if (conducts || !wall.temperature) continue;
+    const std::string path = wall.where.substr(wall.where.rfind(": ") + 2) + ".temperature";
+    problems.add(spec.where(path), "nothing conducts heat to the wall; with heat.contact_conduction: true");
+  }
+  if (!conducts) return;
+  for (const PopulationSpec& population : spec.particles) {
+    const MaterialSpec& material = spec.materials[static_cast<std::size_t>(population.material)];
+    if (material.conductivity) continue;
+    problems.add(spec.where(fmt::format("materials.{}.conductivity", material.name)),
+                 "missing; of particles with heat.contact_conduction a conductivity greater than 0 W/m/K");
+  }
+}
+
 }  // namespace
 
 void check_heat(const CaseSpec& spec, core::InputProblems& problems) {
+  check_conduction(spec, problems);
+  if (!spec.heat && spec.spray.empty() && spec.coating.growth != heat::FilmGrowth::none) {
+    problems.add(spec.where("coating.growth"),
+                 "there are no films without heat or spray; none, or with one of them");
+  }
   if (!spec.heat) {
     for (std::size_t i = 0; i < spec.particles.size(); ++i) {
       for (const char* key : {"initial_temperature", "initial_liquid", "initial_solids"}) {

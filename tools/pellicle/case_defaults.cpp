@@ -96,6 +96,11 @@ void fill_in_heat(CaseSpec& spec) {
   }
 }
 
+bool has_temperature(const CaseSpec& spec, const std::string& wall) {
+  return std::any_of(spec.walls.begin(), spec.walls.end(),
+                     [&](const WallSpec& w) { return w.name == wall && w.temperature.has_value(); });
+}
+
 /// All that a probe can show, without what the gas does not carry.
 std::vector<std::string> all_quantities(const CaseSpec& spec, const ProbeSpec& probe) {
   std::vector<std::string> names;
@@ -111,7 +116,8 @@ std::vector<std::string> all_quantities(const CaseSpec& spec, const ProbeSpec& p
     const bool eddies = !is_turbulent_quantity(quantity.name) || (spec.gas && spec.gas->options.turbulence);
     const bool needs_gas = quantity.name.starts_with("gas_force");
     const bool acts = !probe.wall || (needs_gas ? is_seen : !spec.particles.empty());
-    if (there && eddies && acts) names.emplace_back(quantity.name);
+    const bool takes_heat = !quantity.name.starts_with("wall_heat") || has_temperature(spec, *probe.wall);
+    if (there && eddies && acts && takes_heat) names.emplace_back(quantity.name);
   }
   return names;
 }

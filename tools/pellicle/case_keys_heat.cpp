@@ -21,6 +21,8 @@ void describe_exchange(Keys& keys, HeatSpec& heat) {
             heat.evaporation);
   keys.choice({"saturation", "vapour pressure over water"}, saturation_laws, heat.saturation);
   keys.flag({"stefan_flow", "vapour that evaporates carries more of itself along"}, heat.stefan_flow);
+  keys.flag({"contact_conduction", "of heat between particles that touch, and to walls with a temperature"},
+            heat.contact_conduction);
   keys.real({"latent_heat",
              "of evaporation, at latent_heat_temperature; elsewhere it follows from the heat "
              "capacities of vapour and liquid"},
@@ -38,6 +40,7 @@ void describe_film(Keys& keys, CoatingSpec& coating) {
             coating.solids_density);
   keys.real({"solids_heat_capacity", "of the same"}, {dimension::heat_capacity, range::positive},
             coating.solids_heat_capacity);
+  keys.choice({"growth", "what films do to the particles' motion"}, heat::film_growth_models, coating.growth);
 }
 
 }  // namespace

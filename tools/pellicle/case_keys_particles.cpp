@@ -24,12 +24,17 @@ void describe_material(Keys& keys, MaterialSpec& material) {
   keys.real({"youngs_modulus", "a smaller one than the real allows a larger particle step; overlaps grow",
              Need::required},
             {dimension::pressure, range::positive}, material.youngs_modulus);
-  keys.real({"true_youngs_modulus", "of the real solid: the particle step that it would need is reported"},
+  keys.real({"true_youngs_modulus",
+             "of the real solid: the particle step that it would need is reported, and contacts conduct heat "
+             "as it would"},
             {dimension::pressure, range::positive}, material.true_youngs_modulus);
   keys.real({"poisson_ratio", "of the solid", Need::required},
             {dimension::pure_number, {.min = 0, .max = 0.5}}, material.poisson_ratio);
   keys.real({"heat_capacity", "of the solid; required of particles with heat"},
             {dimension::heat_capacity, range::positive}, material.heat_capacity);
+  keys.real({"conductivity", "of the solid, for heat; required of particles with heat.contact_conduction",
+             Need::has_default, "none: a wall that resists no heat"},
+            {dimension::heat_conductivity, range::positive}, material.conductivity);
 }
 
 void describe_pair(Keys& keys, PairSpec& pair, CaseSpec& spec) {

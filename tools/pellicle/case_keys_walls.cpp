@@ -116,6 +116,9 @@ void describe_wall(Keys& keys, WallSpec& wall, CaseSpec& spec) {
               {dimension::length}, wall.torque_about);
   keys.choice({"gas", "what it is to the gas; the sides of the domain get theirs from gas.boundaries"},
               gas_wall_list, wall.gas);
+  keys.real({"temperature", "towards particles that touch it, with heat.contact_conduction",
+             Need::has_default, "none: it takes no heat"},
+            {dimension::temperature, range::positive}, wall.temperature);
   if (!keys.reading()) return;
   const Real speed = norm(wall.velocity);
   const auto leads_through = [&](const Vec3& normal) {

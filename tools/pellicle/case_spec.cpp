@@ -83,6 +83,7 @@ CartesianGrid make_grid(const GridSpec& grid, const DomainSpec& domain) {
 bool CaseSpec::follows(std::string_view quantity) const {
   const bool warm = heat.has_value();
   const bool sprayed = !spray.empty();
+  if (quantity.starts_with("wall_heat")) return warm && heat->contact_conduction;
   if (quantity == "particle_temperature" || quantity == "particle_temperature_mean") return warm;
   if (quantity == "hits" || quantity == "first_hit_time" || quantity == "last_hit_time") return sprayed;
   if (quantity == "film_liquid" || quantity == "film_solids" || quantity == "coating_thickness") {

@@ -19,6 +19,7 @@
 #include "dem/cohesion_laws.hpp"
 #include "dem/fill.hpp"
 #include "dem/size_distribution.hpp"
+#include "heat/film_growth.hpp"
 #include "spray/spray_pattern.hpp"
 
 namespace pellicle::tools {
@@ -64,6 +65,7 @@ struct MaterialSpec {
   std::optional<Real> true_youngs_modulus{};  ///< of the real solid [Pa], to tell what softening saves
   Real poisson_ratio = 0;
   std::optional<Real> heat_capacity{};  ///< [J/kg/K]; set where particles have a temperature
+  std::optional<Real> conductivity{};   ///< [W/m/K]; set of particles where contacts conduct heat
 };
 
 struct PairSpec {
@@ -212,6 +214,7 @@ struct WallSpec {
   std::optional<VibrationSpec> vibration;
   std::optional<Vec3> torque_about;  ///< [m]
   GasWall gas = GasWall::no_slip;
+  std::optional<Real> temperature;  ///< towards particles that touch it [K]; none: it takes no heat
 };
 
 /// A box in which cells are smaller.
@@ -278,6 +281,7 @@ struct HeatSpec {
   std::string saturation = "buck";  ///< a name in the list of heat::SaturationLaw
   std::optional<bool> evaporation;  ///< filled in: whether the gas carries moisture
   bool stefan_flow = false;
+  bool contact_conduction = false;
   Real latent_heat = 2.4417e6;                   ///< at the temperature below [J/kg]
   Real latent_heat_temperature = 298.15;         ///< [K]
   std::optional<Real> initial_temperature = {};  ///< of particles [K]; filled in: the gas's
@@ -288,6 +292,7 @@ struct CoatingSpec {
   Real liquid_heat_capacity = 4181;  ///< [J/kg/K]
   Real solids_density = 1250;        ///< of the dry coating [kg/m3]
   Real solids_heat_capacity = 1300;  ///< [J/kg/K]
+  heat::FilmGrowth growth = heat::FilmGrowth::none;
 };
 
 struct CouplingSpec {

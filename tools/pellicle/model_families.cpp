@@ -7,6 +7,7 @@
 #include "coupling/coupling_options.hpp"
 #include "dem/contact_laws.hpp"
 #include "dem/size_distribution.hpp"
+#include "heat/film_growth.hpp"
 #include "heat/heat_options.hpp"
 #include "spray/spray_pattern.hpp"
 #include "tools/pellicle/output_fields.hpp"
@@ -89,6 +90,7 @@ const std::vector<ModelFamily>& model_families() {
       {"heat.nusselt", "Heat transfer between gas and particles", transfer_laws},
       {"heat.sherwood", "Transfer of vapour between gas and particles", transfer_laws},
       {"heat.saturation", "Vapour pressure over water", saturation_laws},
+      {"coating.growth", "What films do to the motion of their particles", heat::film_growth_models},
       {"spray.pattern", "Where the droplets of a nozzle go", spray_patterns},
   };
   return families;

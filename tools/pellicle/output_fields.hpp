@@ -131,7 +131,7 @@ inline constexpr std::array<core::ModelInfo, 9> coating_quantities{{
 }};
 
 /// Columns of a wall probe: what particles and gas do to the wall, averaged since the row before.
-inline constexpr std::array<core::ModelInfo, 10> wall_quantities{{
+inline constexpr std::array<core::ModelInfo, 12> wall_quantities{{
     {"wall_force_x", "x component of the force of the particles on the wall [N]"},
     {"wall_force_y", "y component of the force of the particles on the wall [N]"},
     {"wall_force_z", "z component of the force of the particles on the wall [N]"},
@@ -142,6 +142,8 @@ inline constexpr std::array<core::ModelInfo, 10> wall_quantities{{
     {"gas_force_x", "x component of the force of the gas on the wall, pressure and shear [N]"},
     {"gas_force_y", "y component of the force of the gas on the wall [N]"},
     {"gas_force_z", "z component of the force of the gas on the wall [N]"},
+    {"wall_heat_rate", "heat that particles conduct to the wall [W]"},
+    {"wall_heat", "the same since t = 0 [J]"},
 }};
 
 /// Columns of a probe of a side through which particles leave.

@@ -57,6 +57,10 @@ std::optional<PlaneSection> section_of(const ProbeSpec& spec, const CartesianGri
 /// Entry of wall_quantities: means over `interval`, of which there is none at the first row.
 Real wall_quantity(int quantity, const WallFigures& now, const WallFigures& before, Real interval) {
   if (quantity == 6) return static_cast<Real>(now.contacts);
+  if (quantity == 11) return now.heat.value_or(0);
+  if (quantity == 10) {
+    return interval > 0 ? (now.heat.value_or(0) - before.heat.value_or(0)) / interval : 0;
+  }
   if (quantity > 6) return interval > 0 ? (now.gas_impulse - before.gas_impulse)[quantity - 7] / interval : 0;
   const Vec3 given =
       quantity < 3 ? now.impulse - before.impulse : now.angular_impulse - before.angular_impulse;
@@ -170,6 +174,7 @@ void Probes::save(core::CheckpointWriter& checkpoint) const {
     checkpoint.write(path + "/impulse", probe.before.impulse);
     checkpoint.write(path + "/angular_impulse", probe.before.angular_impulse);
     checkpoint.write(path + "/gas_impulse", probe.before.gas_impulse);
+    checkpoint.write(path + "/heat", probe.before.heat.value_or(0));
   }
 }
 
@@ -188,6 +193,7 @@ void Probes::load(const core::CheckpointReader& checkpoint) {
     probe.before.impulse = checkpoint.read_vec3(path + "/impulse");
     probe.before.angular_impulse = checkpoint.read_vec3(path + "/angular_impulse");
     probe.before.gas_impulse = checkpoint.read_vec3(path + "/gas_impulse");
+    probe.before.heat = checkpoint.read_double(path + "/heat");
   }
 }
 

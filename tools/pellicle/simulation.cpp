@@ -62,7 +62,11 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
     droplet_gas_.emplace(
         make_droplet_gas(spec_, *exchange_, gas_->geometry().volume, spray_->largest_parcel_mass()));
   }
-  for (const WallSpec& wall : spec_.walls) walls_.push_back({wall.name, {}, {}, 0, {}});
+  if (spec_.heat && spec_.heat->contact_conduction) conduction_.emplace(make_conduction_options(spec_));
+  for (const WallSpec& wall : spec_.walls) {
+    walls_.push_back({wall.name, {}, {}, 0, {}, {}});
+    if (wall.temperature) walls_.back().heat = 0;
+  }
   if (particles_) particles_->hold_walls();  // until t = 0
   if (options_.until) time_.end_at(*options_.until);
   checkpoints_ = time_.schedule(spec_.output.checkpoint_every, "output.checkpoint.every");
@@ -74,7 +78,9 @@ void Simulation::start() {
   if (particles_) {
     const std::vector<dem::ParticleSeed> seeds = make_particles(spec_, particles_->setup().walls);
     particles_->set_particles(seeds);
+    if (surface_) surface_->note_bare_masses();
     if (spec_.heat) set_initial_surface(spec_, seeds, *surface_);
+    if (surface_) surface_->grow(*particles_);
   }
   folder_.emplace(options_.output_folder,
                   options_.overwrite ? ResultsFolder::Existing::overwrite : ResultsFolder::Existing::refuse);
@@ -99,6 +105,7 @@ void Simulation::resume() {
   if (gas_ && time_.step() >= 0) gas_->load(file);
   if (exchange_ && time_.step() >= 0) exchange_->load(file);
   if (heat_ && time_.step() >= 0) heat_->load(file);
+  if (conduction_ && time_.step() >= 0) conduction_->load(file);
   if (spray_) spray_->load(file);
   if (droplet_gas_) droplet_gas_->load(file);
   for (spray::ContactWetness& region : wetness_) region.load(file);
@@ -119,11 +126,14 @@ void Simulation::resume() {
     wall.contacts = file.read_int64(path + "/contacts");
     wall.gas_impulse = file.read_vec3(path + "/gas_impulse");
   }
+  note_heat_to_walls();
   summary_.gas.load(file);
   settled_gravity_ = file.read_vec3("run/settled_gravity");
   settled_wall_ = file.read_vec3("run/settled_wall");
   settled_volume_time_ = file.read_double("run/settled_volume_time");
   settled_left_mass_ = file.read_double("run/settled_left_mass");
+  settled_grown_mass_ = file.read_double("run/settled_grown_mass");
+  settled_grown_momentum_ = file.read_vec3("run/settled_grown_momentum");
   quiet_steps_ = file.read_int64("run/quiet_steps");
   summary_.largest_overlap = file.read_double("run/largest_overlap");
   summary_.largest_overlap_ratio = file.read_double("run/largest_overlap_ratio");
@@ -210,6 +220,7 @@ void Simulation::advance_outer_step() {
     collect_spray(parts);
     deposit_particles(parts);
     exchange_heat(parts);
+    if (surface_ && !time_.settling()) surface_->grow(*particles_);
     if (!time_.settling()) move_gas(parts);
   }
   watch_contacts();
@@ -300,6 +311,22 @@ void Simulation::exchange_heat(int parts) {
   if (!heat_ || !coupled()) return;
   const core::Timers::Scope scope(timers_, Part::heat);
   heat_->update(particles_->particles(), *exchange_, gas_->state(), *surface_, time_.gas_step() / parts);
+  if (!conduction_) return;
+  conduction_->update(*particles_, *surface_, time_.gas_step() / parts);
+  note_heat_to_walls();
+}
+
+void Simulation::note_heat_to_walls() {
+  if (!conduction_) return;
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    if (walls_[w].heat) walls_[w].heat = conduction_->heat_to_walls()[w];
+  }
+}
+
+Real Simulation::heat_to_walls() const {
+  Real sum = 0;
+  for (const WallFigures& wall : walls_) sum += wall.heat.value_or(0);
+  return sum;
 }
 
 void Simulation::move_gas(int parts) {
@@ -357,6 +384,8 @@ void Simulation::release_gas() {
     settled_wall_ = impulse_through_walls();
     ledger_.open(Conserved::particle_mass, particles_->compute_totals().mass);
     settled_left_mass_ = particles_->left_mass();
+    settled_grown_mass_ = particles_->grown_mass();
+    settled_grown_momentum_ = particles_->grown_momentum();
     particles_->start_walls();
     for (WallFigures& wall : walls_) wall.impulse = wall.angular_impulse = Vec3{};
     watch_zones();
@@ -425,10 +454,10 @@ void Simulation::update_heat_ledger() {
   const Real latent = heat_ ? heat_->options().water.latent : 0;
   const bool one_way = heat_ && heat_->options().one_way;
   const heat::HeatTotals given = one_way ? heat_->totals() : heat::HeatTotals{};
-  Real enthalpy = 0;  // that came with particles and with the droplets that they captured [J]
+  Real enthalpy = 0;  // that came with particles, with the droplets that they captured, and from walls [J]
   if (heat_) {
     enthalpy = surface_->entered().enthalpy - (surface_->left().enthalpy - settled_left_surface_.enthalpy) +
-               summary_.spray.heat.enthalpy;
+               summary_.spray.heat.enthalpy - heat_to_walls();
   }
   if (warmth) {
     const Real through =
@@ -436,7 +465,7 @@ void Simulation::update_heat_ledger() {
     ledger_.set_stock(Conserved::energy, energy_stock());
     ledger_.set_totals(Conserved::energy, Vec3{through, 0, 0},
                        Vec3{heat_ ? given.heat - latent * given.evaporated : warmth->sources, 0, 0},
-                       warmth->gross + (vapour ? latent * vapour->gross : 0));
+                       warmth->gross + (vapour ? latent * vapour->gross : 0) + std::abs(heat_to_walls()));
   }
   if (vapour) {
     ledger_.set_stock(Conserved::water, water_stock());
@@ -491,10 +520,13 @@ void Simulation::update_ledger() {
     const dem::ParticleTotals totals = particles_->compute_totals();
     stock += totals.momentum;
     through += impulse_through_walls() - settled_wall_ + particles_->entered_momentum();
+    // Films come and go with the velocity of their particles.
+    sources += particles_->grown_momentum() - settled_grown_momentum_;
+    const Real grown = particles_->grown_mass() - settled_grown_mass_;
     const Real left_mass = particles_->left_mass() - settled_left_mass_;
     ledger_.set_stock(Conserved::particle_mass, totals.mass);
-    ledger_.set_totals(Conserved::particle_mass, Vec3{particles_->entered_mass() - left_mass, 0, 0}, Vec3{},
-                       particles_->entered_mass() + left_mass);
+    ledger_.set_totals(Conserved::particle_mass, Vec3{particles_->entered_mass() - left_mass, 0, 0},
+                       Vec3{grown, 0, 0}, particles_->entered_mass() + left_mass);
     const Vec3 gravity = particles_->gravity_impulse() - settled_gravity_;
     sources += gravity;
     gross += norm(gravity);
@@ -580,6 +612,7 @@ void Simulation::write_checkpoint() {
   if (gas_ && time_.step() >= 0) gas_->save(file);
   if (exchange_ && time_.step() >= 0) exchange_->save(file);
   if (heat_ && time_.step() >= 0) heat_->save(file);
+  if (conduction_ && time_.step() >= 0) conduction_->save(file);
   if (spray_) spray_->save(file);
   if (droplet_gas_) droplet_gas_->save(file);
   for (const spray::ContactWetness& region : wetness_) region.save(file);
@@ -604,6 +637,8 @@ void Simulation::write_checkpoint() {
   file.write("run/settled_wall", settled_wall_);
   file.write("run/settled_volume_time", settled_volume_time_);
   file.write("run/settled_left_mass", settled_left_mass_);
+  file.write("run/settled_grown_mass", settled_grown_mass_);
+  file.write("run/settled_grown_momentum", settled_grown_momentum_);
   file.write("run/quiet_steps", quiet_steps_);
   file.write("run/largest_overlap", summary_.largest_overlap);
   file.write("run/largest_overlap_ratio", summary_.largest_overlap_ratio);

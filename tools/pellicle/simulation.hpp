@@ -15,6 +15,7 @@
 #include "coupling/momentum_exchange.hpp"
 #include "dem/engine.hpp"
 #include "dem/feed.hpp"
+#include "heat/contact_conduction.hpp"
 #include "heat/heat_exchange.hpp"
 #include "heat/surface_state.hpp"
 #include "spray/droplet_gas.hpp"
@@ -78,6 +79,8 @@ class Simulation {
   void update_ledger();
   void update_heat_ledger();
   SprayFigures spray_figures() const;
+  void note_heat_to_walls();
+  Real heat_to_walls() const;
   void open_spray_ledger();
   void update_spray_ledger();
   dem::SubstepHook substep_hook(int substeps);
@@ -110,6 +113,7 @@ class Simulation {
   std::optional<heat::HeatExchange> heat_;
   std::optional<spray::DropletGas> droplet_gas_;
   spray::ParcelGas no_gas_;                   // without gas there is no drag
+  std::optional<heat::ContactConduction> conduction_;
   DeviceArray<Real> parcel_gas_temperature_;  // with heat [K]
   std::optional<Outputs> outputs_;
 
@@ -128,6 +132,8 @@ class Simulation {
   heat::SurfaceTotals settled_left_surface_;  // what left with particles before t = 0
   std::int64_t quiet_steps_ = 0;              // since the particles moved faster than time.settle.speed
   Real settled_left_mass_ = 0;                // [kg]
+  Real settled_grown_mass_ = 0;               // [kg]
+  Vec3 settled_grown_momentum_{};             // [N s]
   double made_ = core::wall_clock();          // when this process began to set up [s]
   double wall_begin_ = 0, wall_before_ = 0;   // of this process, and of those before it [s]
   double setup_before_ = 0;                   // of the processes before this one [s]

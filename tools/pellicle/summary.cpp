@@ -153,6 +153,10 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
                                 {"impulse", list(wall.impulse)},
                                 {"angular_impulse", list(wall.angular_impulse)},
                                 {"contacts", wall.contacts}};
+    if (wall.heat) {
+      json["walls"][wall.name]["heat"] = *wall.heat;
+      json["walls"][wall.name]["mean_heat_rate"] = time > 0 ? *wall.heat / time : 0;
+    }
     if (summary.gas.steps == 0) continue;
     json["walls"][wall.name]["mean_gas_force"] = mean(wall.gas_impulse);
     json["walls"][wall.name]["gas_impulse"] = list(wall.gas_impulse);
@@ -233,6 +237,7 @@ Summary read_summary(const std::filesystem::path& path) {
         };
         summary.walls.push_back({name, vector("impulse"), vector("angular_impulse"), wall.at("contacts"),
                                  wall.contains("gas_impulse") ? vector("gas_impulse") : Vec3{}});
+        if (wall.contains("heat")) summary.walls.back().heat = wall.at("heat").get<double>();
       }
     }
     if (json.contains("gas_boundaries")) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/types.hpp"
@@ -18,6 +19,8 @@ struct WallFigures {
   Vec3 angular_impulse{};  ///< about the wall's torque_about [N m s]
   std::int64_t contacts = 0;
   Vec3 gas_impulse{};  ///< that the gas gave to it since t = 0: pressure and shear [N s]
+  std::optional<Real>
+      heat{};  ///< that particles conducted to it since t = 0 [J]; of a wall with a temperature
 };
 
 /// What has left through each side since the start, settling included; in the order of `domain_sides`.
