@@ -110,7 +110,9 @@ gas:
 /// A wet particle that dries.
 inline constexpr const char* drying_case = R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
 time: {end: 1, gas_step: 0.01, particle_step: 1e-5}
-materials: {bead: {density: 1500, youngs_modulus: 1e6, poisson_ratio: 0.3, heat_capacity: "0.9 kJ/kg/K"}}
+materials: {bead: {density: 1500, youngs_modulus: 1e6, poisson_ratio: 0.3, heat_capacity: "0.9 kJ/kg/K",
+                   conductivity: "0.8 W/m/K", true_youngs_modulus: "60 GPa"}}
+walls: [{name: plate, disc: {centre: [0.5, 0.5, 0.1], normal: [0, 0, 1], radius: 0.1}, material: bead, temperature: "60 degC"}]
 contacts: {pairs: [{between: [bead, bead], restitution: 0.9, sliding_friction: 0.3}]}
 particles:
   - {material: bead, diameter: "10 mm", initial_temperature: "40 degC", initial_liquid: 0.05, initial_solids: "1 %",
@@ -123,8 +125,9 @@ gas:
   grid: {cells: [2, 3, 4]}
   boundaries: [{name: out, on: top, outlet: {}}]
 heat: {nusselt: ranz_marshall, sherwood: ranz_marshall, evaporation: true, saturation: clausius_clapeyron, stefan_flow: true,
+       contact_conduction: true,
        latent_heat: "2501 kJ/kg", latent_heat_temperature: "0 degC", initial_temperature: "30 degC"}
-coating: {liquid_heat_capacity: "4.2 kJ/kg/K", solids_density: "1.3 g/cm3", solids_heat_capacity: 1400}
+coating: {growth: mass, liquid_heat_capacity: "4.2 kJ/kg/K", solids_density: "1.3 g/cm3", solids_heat_capacity: 1400}
 )";
 
 /// Warm gas of constant density that rises, dry.

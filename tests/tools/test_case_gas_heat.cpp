@@ -145,11 +145,11 @@ TEST(CaseHeat, KeysOfParticlesAreRead) {
 
 // Without moisture nothing evaporates, and particles begin as warm as the gas.
 TEST(CaseHeat, DefaultsFollowFromTheGas) {
-  const CaseSpec wet = parse_case(drying_case, "c.yaml", {"heat={}"});
+  const CaseSpec wet = parse_case(drying_case, "c.yaml", {"heat={}", "walls="});
   EXPECT_TRUE(*wet.heat->evaporation);
   EXPECT_EQ(*wet.heat->initial_temperature, 300);
   EXPECT_EQ(wet.heat->nusselt, "gunn");
-  const CaseSpec dry = parse_case(drying_case, "c.yaml", {"heat={}", "gas.moisture="});
+  const CaseSpec dry = parse_case(drying_case, "c.yaml", {"heat={}", "walls=", "gas.moisture="});
   EXPECT_FALSE(*dry.heat->evaporation);
 }
 

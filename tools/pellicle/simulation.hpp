@@ -112,7 +112,7 @@ class Simulation {
   std::optional<coupling::MomentumExchange> exchange_;
   std::optional<heat::HeatExchange> heat_;
   std::optional<spray::DropletGas> droplet_gas_;
-  spray::ParcelGas no_gas_;                   // without gas there is no drag
+  spray::ParcelGas no_gas_;  // without gas there is no drag
   std::optional<heat::ContactConduction> conduction_;
   DeviceArray<Real> parcel_gas_temperature_;  // with heat [K]
   std::optional<Outputs> outputs_;
