@@ -20,7 +20,8 @@ Real incoming_density(const BoundaryPatch& patch, const GasOptions& options) {
 }
 
 GasScalars::GasScalars(const FlowGeometry& geometry, const Boundaries& boundaries,
-                       const std::vector<BoundaryPatch>& patches, const GasOptions& options)
+                       const std::vector<BoundaryPatch>& patches, const GasOptions& options,
+                       const std::optional<ScalarScratch>& scratch)
     : geometry_(geometry), boundaries_(boundaries), options_(options) {
   check();
   for (std::size_t i = 0; i < scalar_count; ++i) {
@@ -34,7 +35,7 @@ GasScalars::GasScalars(const FlowGeometry& geometry, const Boundaries& boundarie
       own.turbulent_number = heat ? options.turbulence->prandtl_number : options.turbulence->schmidt_number;
     }
     transport_[i].emplace(std::string(scalar_names[i]), geometry, boundaries, conditions, own,
-                          options.convection);
+                          options.convection, scratch.value());
   }
   auto& moisture = transport_[index_of(Scalar::moisture)];
   const auto& heat = options.scalars[index_of(Scalar::temperature)];

@@ -15,9 +15,10 @@ Real incoming_density(const BoundaryPatch& patch, const GasOptions& options);
 
 class GasScalars {
  public:
-  /// Throws InputError for laws that need a temperature where none is solved, and as ScalarTransport does.
+  /// `scratch`: needed where options have scalars. Throws InputError for laws that need a temperature where none is solved, and as ScalarTransport does.
   GasScalars(const FlowGeometry& geometry, const Boundaries& boundaries,
-             const std::vector<BoundaryPatch>& patches, const GasOptions& options);
+             const std::vector<BoundaryPatch>& patches, const GasOptions& options,
+             const std::optional<ScalarScratch>& scratch);
 
   /// Initial values; density and viscosity follow.
   void initialise(GasFields& fields);

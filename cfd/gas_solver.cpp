@@ -33,6 +33,12 @@ void check_options(const GasOptions& o) {
   if (o.solver.max_outer_iterations < 1) refuse("solver.max_outer_iterations is too small; allowed: >= 1");
 }
 
+std::optional<ScalarScratch> make_scalar_scratch(const Stencil& stencil, const GasOptions& options) {
+  const bool needed = options.turbulence ||
+                      std::ranges::any_of(options.scalars, [](const auto& one) { return one.has_value(); });
+  return needed ? std::optional<ScalarScratch>(stencil) : std::nullopt;
+}
+
 // A mass flow is a flow rate at the density of the gas that comes in.
 std::vector<BoundaryPatch> with_flow_rates(std::vector<BoundaryPatch> patches, const GasOptions& options) {
   for (BoundaryPatch& patch : patches) {
@@ -66,9 +72,10 @@ GasSolver::Impl::Impl(const CartesianGrid& grid, const GasOptions& gas_options,
       faces(geometry, boundaries, options),
       pressure_matrix(geometry.stencil),
       pressure_solver(geometry, options.solver.pressure_solver),
-      scalars(geometry, boundaries, patches, options) {
+      scalar_scratch(make_scalar_scratch(geometry.stencil, options)),
+      scalars(geometry, boundaries, patches, options, scalar_scratch) {
   check_options(options);
-  if (options.turbulence) turbulence.emplace(geometry, boundaries, patches, options);
+  if (options.turbulence) turbulence.emplace(geometry, boundaries, patches, options, *scalar_scratch);
   const Index n = fields.cells;
   pressure_matrix.singular = !boundaries.has_outlet;
   influx = make_array("cfd::gas_solver::influx", 3 * n);

@@ -59,6 +59,7 @@ struct GasSolver::Impl {
   PressureLinearSolver pressure_solver;
   GasState state;
   GasBalance balance;
+  std::optional<ScalarScratch> scalar_scratch;  ///< of all scalars, of k and of epsilon
   GasScalars scalars;
   std::optional<KEpsilon> turbulence;
 

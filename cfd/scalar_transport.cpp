@@ -28,30 +28,36 @@ HostArray<Real> make_array(const std::string& label, Index size) {
 ScalarTransport::ScalarTransport(std::string name, const FlowGeometry& geometry, const Boundaries& boundaries,
                                  const std::vector<ScalarBoundary>& patches, const ScalarOptions& options,
                                  Convection scheme)
+    : ScalarTransport(std::move(name), geometry, boundaries, patches, options, scheme,
+                      ScalarScratch(geometry.stencil)) {}
+
+ScalarTransport::ScalarTransport(std::string name, const FlowGeometry& geometry, const Boundaries& boundaries,
+                                 const std::vector<ScalarBoundary>& patches, const ScalarOptions& options,
+                                 Convection scheme, const ScalarScratch& scratch)
     : name_(std::move(name)),
       geometry_(geometry),
       boundaries_(boundaries),
       options_(options),
       scheme_(scheme),
-      carrier_(make_face_field(geometry.stencil, "cfd::scalar_transport::carrier")),
-      conductance_(make_face_field(geometry.stencil, "cfd::scalar_transport::conductance")),
-      correction_(make_face_field(geometry.stencil, "cfd::scalar_transport::correction")),
-      linear_solver_(geometry.stencil.cells()) {
+      carrier_(scratch.carrier),
+      conductance_(scratch.conductance),
+      correction_(scratch.correction),
+      near_(scratch.near),
+      own_(scratch.own),
+      base_(scratch.base),
+      rhs_(scratch.rhs),
+      storage_(scratch.storage),
+      content_old_(scratch.content_old),
+      gain_(scratch.gain),
+      linear_solver_(scratch.linear_solver) {
   const Index n = geometry.stencil.cells();
   value_ = make_array("cfd::scalar_transport::value", n);
   excess_ = make_array("cfd::scalar_transport::excess", n);
   old_ = make_array("cfd::scalar_transport::old", n);
-  own_ = make_array("cfd::scalar_transport::own", n);
-  base_ = make_array("cfd::scalar_transport::base", n);
-  storage_ = make_array("cfd::scalar_transport::storage", n);
   content_ = make_array("cfd::scalar_transport::content", n);
-  content_old_ = make_array("cfd::scalar_transport::content_old", n);
-  gain_ = make_array("cfd::scalar_transport::gain", n);
   carrier_out_.assign(boundaries.pieces.size(), 0);
-  rhs_ = make_array("cfd::scalar_transport::rhs", n);
   flagged_.assign(static_cast<std::size_t>(n), 0);
   for (std::size_t d = 0; d < 6; ++d) {
-    near_[d] = make_array("cfd::scalar_transport::near" + std::to_string(d), n);
     boundary_values_[d].resize(boundaries.values[d].size());
   }
   for (const BoundaryPiece& piece : boundaries.pieces) {
@@ -274,6 +280,7 @@ void ScalarTransport::compute_correction() {
 void ScalarTransport::compute_correction() {
   switch (scheme_) {
     case Convection::upwind:
+      for (const auto& axis : correction_) Kokkos::deep_copy(axis, 0.0);  // of who had the memory before
       break;
     case Convection::ultimate_quickest:
       compute_correction<Convection::ultimate_quickest>();
@@ -343,7 +350,7 @@ TransportReport ScalarTransport::solve(Real tolerance) {
 // The discrete maximum principle: a value lies between those at the boundaries and those that the cells would get from
 // what they had and from their sources alone.
 ScalarTransport::Bounds ScalarTransport::find_bounds(const GasFields& fields, Real dt,
-                                                     const ScalarSource& source) const {
+                                                     const ScalarSource& source) {
   const bool sources = source.rate.extent(0) > 0;
   const auto alone = [&](Index c) {
     Real amount = content_old_(c) / dt * old_(c);
@@ -352,14 +359,20 @@ ScalarTransport::Bounds ScalarTransport::find_bounds(const GasFields& fields, Re
     }
     return amount / storage_(c);
   };
-  Bounds bounds{std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity()};
+  // From a first value on, since sums of the largest begin at 0.
+  const Index n = geometry_.stencil.cells();
+  Index first = 0;
+  while (first < n && !(geometry_.volume(first) > 0)) ++first;
+  const Real start = first < n ? alone(first) : std::numeric_limits<Real>::quiet_NaN();
+  const auto beyond = sum_.largest_two("cfd::scalar_transport::bounds", n, [&](Index c) {
+    const Real more = geometry_.volume(c) > 0 ? alone(c) - start : 0;
+    return std::array<Real, 2>{-more, more};
+  });
+  Bounds bounds{start - beyond[0], start + beyond[1]};
   const auto include = [&](Real v) {
     bounds.low = std::min(bounds.low, v);
     bounds.high = std::max(bounds.high, v);
   };
-  for (Index c = 0; c < geometry_.stencil.cells(); ++c) {
-    if (geometry_.volume(c) > 0) include(alone(c));
-  }
   for (std::size_t b = 0; b < boundaries_.pieces.size(); ++b) {
     const PieceTerms terms = piece_terms(fields, b);
     if (terms.inflow + terms.conductance > 0) include(terms.given);
@@ -371,16 +384,15 @@ ScalarTransport::Bounds ScalarTransport::find_bounds(const GasFields& fields, Re
 int ScalarTransport::flag_cells_beyond(const Bounds& bounds) {
   // Ten times what a linear solve leaves.
   const Real slack = 10 * options_.tolerance * std::max(std::abs(bounds.low), std::abs(bounds.high));
-  int found = 0;
-  for (Index c = 0; c < geometry_.stencil.cells(); ++c) {
-    auto& flag = flagged_[static_cast<std::size_t>(c)];
-    if (flag == 0 && geometry_.volume(c) > 0 &&
-        (excess_(c) < bounds.low - slack || excess_(c) > bounds.high + slack)) {
-      flag = 1;
-      ++found;
-    }
-  }
-  return found;
+  const Real low = bounds.low - slack, high = bounds.high + slack;
+  const Real *volume = geometry_.volume.data(), *value = excess_.data();
+  char* flagged = flagged_.data();
+  const Real found = sum_("cfd::scalar_transport::flag", geometry_.stencil.cells(), [=](Index c) {
+    if (flagged[c] != 0 || !(volume[c] > 0) || !(value[c] < low || value[c] > high)) return Real{0};
+    flagged[c] = 1;
+    return Real{1};
+  });
+  return static_cast<int>(found);
 }
 
 void ScalarTransport::drop_flagged_corrections() {
@@ -472,12 +484,15 @@ void ScalarTransport::finish(const GasFields& fields, Real dt, const ScalarSourc
   }
   publish();
   update_stock();
-  for (Index c = 0; c < n; ++c) {
-    if (std::isfinite(value_(c))) continue;
-    const Index3 at = geometry_.grid.coordinates(c);
-    throw RunError(
-        fmt::format("gas: the {} is no longer finite, in cell ({}, {}, {})", name_, at.x, at.y, at.z));
-  }
+  const Real* value = value_.data();
+  const auto is_bad = [=](Index c) { return !std::isfinite(value[c]); };
+  if (sum_("cfd::scalar_transport::not_finite", n, [=](Index c) { return is_bad(c) ? 1.0 : 0.0; }) == 0)
+    return;
+  Index c = 0;
+  while (!is_bad(c)) ++c;
+  const Index3 at = geometry_.grid.coordinates(c);
+  throw RunError(
+      fmt::format("gas: the {} is no longer finite, in cell ({}, {}, {})", name_, at.x, at.y, at.z));
 }
 
 void ScalarTransport::publish() {

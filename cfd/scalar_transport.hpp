@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "cfd/bicgstab.hpp"
 #include "cfd/boundary_pieces.hpp"
 #include "cfd/flow_geometry.hpp"
 #include "cfd/gas_fields.hpp"
 #include "cfd/gas_options.hpp"
 #include "cfd/scalar_balance.hpp"
 #include "cfd/scalar_options.hpp"
+#include "cfd/scalar_scratch.hpp"
 
 namespace pellicle::core {
 class CheckpointWriter;
@@ -34,6 +34,10 @@ class ScalarTransport {
  public:
   /// `patches`: what each patch of the boundaries means for the scalar. Throws InputError for properties out of range
   /// and for an inlet without a value, naming the scalar as `name`.
+  ScalarTransport(std::string name, const FlowGeometry& geometry, const Boundaries& boundaries,
+                  const std::vector<ScalarBoundary>& patches, const ScalarOptions& options, Convection scheme,
+                  const ScalarScratch& scratch);
+  /// With scratch memory of its own.
   ScalarTransport(std::string name, const FlowGeometry& geometry, const Boundaries& boundaries,
                   const std::vector<ScalarBoundary>& patches, const ScalarOptions& options,
                   Convection scheme);
@@ -93,7 +97,7 @@ class ScalarTransport {
   template <class Take>
   void apply(const char* label, const Real* x, Take&& take) const;
   TransportReport solve(Real tolerance);
-  Bounds find_bounds(const GasFields& fields, Real dt, const ScalarSource& source) const;
+  Bounds find_bounds(const GasFields& fields, Real dt, const ScalarSource& source);
   int flag_cells_beyond(const Bounds& bounds);
   void drop_flagged_corrections();
   void stay_within_bounds(const Bounds& bounds, ScalarReport& report);
@@ -113,19 +117,17 @@ class ScalarTransport {
 
   HostArray<Real> value_, excess_, old_;  ///< excess: value less the reference, the unknown
   // What carries the value, with its own continuity: capacity of the gas.
-  HostArray<Real> content_,
-      content_old_;                ///< of a cell, at the end and the beginning of the step [J/K], [kg]
-  FaceField carrier_;              ///< flux of it [J/K/s], [kg/s]; 0 on boundary faces
-  std::vector<Real> carrier_out_;  ///< likewise out through each boundary piece
-  HostArray<Real> gain_;           ///< of a cell by the source of mass, per second
+  HostArray<Real> content_;        ///< of a cell, at the end of the step [J/K], [kg]
+  std::vector<Real> carrier_out_;  ///< flux of it out through each boundary piece [J/K/s], [kg/s]
   FaceField flux_;  ///< of what is transported, through faces with two cells; empty unless it is kept
   std::vector<Real> flux_out_;  ///< likewise through each boundary piece
 
-  FaceField conductance_;  ///< eps k area / distance of faces with two cells, half cells in series
-  FaceField correction_;   ///< flux of the scheme less that of upwind
   std::array<std::vector<FaceOfBoundary>, 6> boundary_values_;  ///< per side and place, as Boundaries::values
-  std::array<HostArray<Real>, 6> near_;                         ///< x-, x+, y-, y+, z-, z+
-  HostArray<Real> own_, base_, storage_, rhs_;  ///< storage: what changes with the cell's own value
+
+  // Handles to what the scratch memory holds.
+  FaceField carrier_, conductance_, correction_;
+  std::array<HostArray<Real>, 6> near_;
+  HostArray<Real> own_, base_, rhs_, storage_, content_old_, gain_;
   std::vector<char> flagged_;
   BiCGStab linear_solver_;
   ScalarBalance balance_;

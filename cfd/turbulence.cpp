@@ -78,17 +78,18 @@ Convection bounded(Convection scheme) {
 }  // namespace
 
 KEpsilon::KEpsilon(const FlowGeometry& geometry, const Boundaries& boundaries,
-                   const std::vector<BoundaryPatch>& patches, const GasOptions& options)
+                   const std::vector<BoundaryPatch>& patches, const GasOptions& options,
+                   const ScalarScratch& scratch)
     : geometry_(geometry),
       boundaries_(boundaries),
       options_(options),
       fastest_inlet_(find_incoming(boundaries, patches).fastest),
       k_("turbulent_kinetic_energy", geometry, boundaries,
          make_conditions(patches, find_incoming(boundaries, patches).k), make_options(Constants::sigma_k),
-         bounded(options.convection)),
+         bounded(options.convection), scratch),
       epsilon_("turbulent_dissipation", geometry, boundaries,
                make_conditions(patches, find_incoming(boundaries, patches).epsilon),
-               make_options(Constants::sigma_epsilon), bounded(options.convection)) {
+               make_options(Constants::sigma_epsilon), bounded(options.convection), scratch) {
   const KEpsilonOptions& o = *options.turbulence;
   const auto refuse = [](const char* what) { throw InputError(fmt::format("gas: turbulence: {}", what)); };
   if (!(o.initial_k.value_or(1) > 0)) refuse("the initial k is not positive; allowed: > 0 m2/s2");

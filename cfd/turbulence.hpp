@@ -23,7 +23,8 @@ class KEpsilon {
  public:
   /// Throws InputError for options out of range.
   KEpsilon(const FlowGeometry& geometry, const Boundaries& boundaries,
-           const std::vector<BoundaryPatch>& patches, const GasOptions& options);
+           const std::vector<BoundaryPatch>& patches, const GasOptions& options,
+           const ScalarScratch& scratch);
 
   /// Initial k and epsilon, from the velocities in `fields` where the options do not say.
   void initialise(GasFields& fields);
