@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "core/checkpoint.hpp"
 #include "core/csv.hpp"
@@ -29,9 +28,7 @@ Lines::Lines(const std::vector<LineSpec>& specs, core::TimeControl& time, const 
                                      spec.quantity));
       }
       line.cells = bin_cells(spec, line.geometry, *gas_grid);
-      const auto points = static_cast<std::size_t>(spec.points);
-      line.gas_sums = {std::vector<std::int64_t>(points), std::vector<double>(points),
-                       std::vector<double>(points)};
+      line.gas_moments.resize(static_cast<std::size_t>(spec.points));
     } else {
       throw InputError(fmt::format("{}: unknown quantity {}; allowed: {}", spec.where, spec.quantity,
                                    line_quantity_names()));
@@ -51,20 +48,20 @@ void Lines::sample(std::int64_t step, const ParticleColumns* particles, const Ga
         Real value = 0;
         for (const auto& [cell, share] : line.cells[bin])
           value += share * gas_quantity(*gas, line.gas_quantity, cell);
-        ++line.gas_sums.samples[bin];
-        line.gas_sums.sum[bin] += value;
-        line.gas_sums.square[bin] += value * value;
+        line.gas_moments[bin].add(value);
       }
     }
   }
 }
 
-BinSums Lines::sums_of(const Line& line) { return line.particles ? line.particles->sums() : line.gas_sums; }
+std::vector<core::RunningMoments> Lines::moments_of(const Line& line) {
+  return line.particles ? line.particles->moments() : line.gas_moments;
+}
 
 void Lines::write(const ResultsFolder& folder) const {
   for (const auto& line : lines_) {
-    const BinSums sums = sums_of(line);
-    const std::size_t points = sums.samples.size();
+    const std::vector<core::RunningMoments> moments = moments_of(line);
+    const std::size_t points = moments.size();
     const std::string header = column_header(line.spec.quantity);
     const std::string unit = header.substr(header.find('['));
     const Vec3& direction = line.geometry.direction;
@@ -76,14 +73,9 @@ void Lines::write(const ResultsFolder& folder) const {
                          std::vector<std::vector<double>>(4, std::vector<double>(points))};
     table.columns[0] = line_positions(line.spec, line.geometry);
     for (std::size_t bin = 0; bin < points; ++bin) {
-      const auto samples = static_cast<double>(sums.samples[bin]);
-      const double mean =
-          sums.samples[bin] > 0 ? sums.sum[bin] / samples : std::numeric_limits<double>::quiet_NaN();
-      const double variance = sums.samples[bin] > 0 ? sums.square[bin] / samples - mean * mean : mean;
-      // Not std::max, which would turn nan into 0; round-off may leave a variance just below 0.
-      table.columns[1][bin] = mean;
-      table.columns[2][bin] = variance < 0 ? 0 : std::sqrt(variance);
-      table.columns[3][bin] = samples;
+      table.columns[1][bin] = moments[bin].mean_or_nan();
+      table.columns[2][bin] = moments[bin].deviation();
+      table.columns[3][bin] = static_cast<double>(moments[bin].samples);
     }
     core::write_csv(folder.csv("lines", line.spec.name), table);
   }
@@ -100,28 +92,26 @@ std::string Lines::fingerprint(const Line& line) {
 void Lines::save(core::CheckpointWriter& checkpoint) const {
   for (const auto& line : lines_) {
     const std::string name = "output/lines/" + line.spec.name + "/";
-    const BinSums sums = sums_of(line);
     checkpoint.write(name + "is", fingerprint(line));
-    checkpoint.write(name + "samples", sums.samples);
-    checkpoint.write(name + "sum", sums.sum);
-    checkpoint.write(name + "square", sums.square);
+    checkpoint.write(name + "moments", moments_of(line));
   }
 }
 
 void Lines::load(const core::CheckpointReader& checkpoint) {
   for (auto& line : lines_) {
     const std::string name = "output/lines/" + line.spec.name + "/";
-    if (!checkpoint.has(name + "is") || checkpoint.read_string(name + "is") != fingerprint(line)) {
+    // A checkpoint of an earlier version has no moments.
+    if (!checkpoint.has(name + "moments") || checkpoint.read_string(name + "is") != fingerprint(line)) {
       core::log().warn("the line {} is new or has changed since the checkpoint: its average begins now",
                        line.spec.name);
       continue;
     }
-    const BinSums sums{checkpoint.read_int64s(name + "samples"), checkpoint.read_doubles(name + "sum"),
-                       checkpoint.read_doubles(name + "square")};
+    std::vector<core::RunningMoments> moments(static_cast<std::size_t>(line.spec.points));
+    checkpoint.read_into(name + "moments", moments);
     if (line.particles) {
-      line.particles->set_sums(sums);
+      line.particles->set_moments(moments);
     } else {
-      line.gas_sums = sums;
+      line.gas_moments = std::move(moments);
     }
   }
 }

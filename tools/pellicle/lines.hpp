@@ -44,10 +44,10 @@ class Lines {
     core::StepWindow window;
     int gas_quantity = -1;  ///< or a particle quantity, then:
     std::unique_ptr<ParticleLine> particles;
-    std::vector<std::vector<CellShare>> cells;  ///< of a gas quantity, by bin
-    BinSums gas_sums;                           ///< of a gas quantity
+    std::vector<std::vector<CellShare>> cells;      ///< of a gas quantity, by bin
+    std::vector<core::RunningMoments> gas_moments;  ///< of a gas quantity, by bin
   };
-  static BinSums sums_of(const Line& line);
+  static std::vector<core::RunningMoments> moments_of(const Line& line);
   static std::string fingerprint(const Line& line);
 
   std::vector<Line> lines_;

@@ -41,44 +41,23 @@ struct AddHits {
   Index hits;
   DeviceArray<const Index> hit_bin;
   DeviceArray<const Real> hit_value;
-  DeviceArray<std::int64_t> samples;
-  DeviceArray<Real> sum, square;
+  DeviceArray<core::RunningMoments> moments;
 
   KOKKOS_INLINE_FUNCTION void operator()(Index bin) const {
-    std::int64_t count = 0;
-    Real first = 0, second = 0;
+    core::RunningMoments of_bin = moments(bin);
     for (Index h = 0; h < hits; ++h) {
-      if (hit_bin(h) != bin) continue;
-      ++count;
-      first += hit_value(h);
-      second += hit_value(h) * hit_value(h);
+      if (hit_bin(h) == bin) of_bin.add(hit_value(h));
     }
-    samples(bin) += count;
-    sum(bin) += first;
-    square(bin) += second;
+    moments(bin) = of_bin;
   }
 };
-
-template <class T>
-void copy_out(const DeviceArray<T>& from, std::vector<T>& to) {
-  to.resize(from.extent(0));
-  Kokkos::deep_copy(Kokkos::View<T*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(to.data(), to.size()), from);
-}
-
-template <class T>
-void copy_in(const std::vector<T>& from, const DeviceArray<T>& to) {
-  Kokkos::deep_copy(
-      to, Kokkos::View<const T*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(from.data(), from.size()));
-}
 
 }  // namespace
 
 ParticleLine::ParticleLine(const LineGeometry& line, int quantity)
     : line_(line),
       quantity_(quantity),
-      samples_("tools::particle_lines::samples", static_cast<std::size_t>(line.points)),
-      sum_("tools::particle_lines::sum", static_cast<std::size_t>(line.points)),
-      square_("tools::particle_lines::square", static_cast<std::size_t>(line.points)) {}
+      moments_("tools::particle_lines::moments", static_cast<std::size_t>(line.points)) {}
 
 void ParticleLine::add(const ParticleColumns& columns) {
   const dem::Particles& particles = columns.particles;
@@ -99,21 +78,21 @@ void ParticleLine::add(const ParticleColumns& columns) {
                         ListHits{quantity_, bin_of_, columns, hit_bin_, hit_value_}, hits);
   if (hits == 0) return;
   Kokkos::parallel_for("tools::particle_lines::add_hits", DeviceRange(0, line_.points),
-                       AddHits{hits, hit_bin_, hit_value_, samples_, sum_, square_});
+                       AddHits{hits, hit_bin_, hit_value_, moments_});
 }
 
-BinSums ParticleLine::sums() const {
-  BinSums sums;
-  copy_out(samples_, sums.samples);
-  copy_out(sum_, sums.sum);
-  copy_out(square_, sums.square);
-  return sums;
+std::vector<core::RunningMoments> ParticleLine::moments() const {
+  std::vector<core::RunningMoments> moments(moments_.extent(0));
+  Kokkos::deep_copy(Kokkos::View<core::RunningMoments*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
+                        moments.data(), moments.size()),
+                    moments_);
+  return moments;
 }
 
-void ParticleLine::set_sums(const BinSums& sums) {
-  copy_in(sums.samples, samples_);
-  copy_in(sums.sum, sum_);
-  copy_in(sums.square, square_);
+void ParticleLine::set_moments(const std::vector<core::RunningMoments>& moments) {
+  Kokkos::deep_copy(moments_,
+                    Kokkos::View<const core::RunningMoments*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
+                        moments.data(), moments.size()));
 }
 
 }  // namespace pellicle::tools

@@ -1,8 +1,9 @@
-// Sums of a particle quantity over the bins of a line, on the device.
+// Moments of a particle quantity in the bins of a line, on the device.
 #pragma once
 
 #include <vector>
 
+#include "core/running_moments.hpp"
 #include "core/types.hpp"
 #include "core/views.hpp"
 #include "tools/pellicle/line_geometry.hpp"
@@ -10,14 +11,8 @@
 
 namespace pellicle::tools {
 
-/// Number of samples, their sum and the sum of their squares, one entry a bin.
-struct BinSums {
-  std::vector<std::int64_t> samples;
-  std::vector<double> sum, square;
-};
-
 /// The bins of one line. Each add() counts every particle whose centre lies in a bin as one sample of that bin.
-/// The sums are formed in the order of the particles in memory, by one thread a bin, so that they do not depend on
+/// The moments are formed in the order of the particles in memory, by one thread a bin, so that they do not depend on
 /// the number of threads.
 class ParticleLine {
  public:
@@ -26,14 +21,14 @@ class ParticleLine {
 
   void add(const ParticleColumns& columns);
 
-  BinSums sums() const;
-  void set_sums(const BinSums& sums);
+  /// One entry a bin.
+  std::vector<core::RunningMoments> moments() const;
+  void set_moments(const std::vector<core::RunningMoments>& moments);
 
  private:
   LineGeometry line_;
   int quantity_;
-  DeviceArray<std::int64_t> samples_;
-  DeviceArray<Real> sum_, square_;
+  DeviceArray<core::RunningMoments> moments_;
   DeviceArray<Index> bin_of_;   ///< bin of each particle or -1
   DeviceArray<Index> hit_bin_;  ///< of the particles in the line, in their order
   DeviceArray<Real> hit_value_;
