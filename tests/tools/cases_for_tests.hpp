@@ -57,13 +57,15 @@ coupling: {drag: koch_hill, deposition: centroid, transfer_grid: {cell_size: "5 
 output:
   checkpoint: {every: "0.1 s"}
   snapshots: {every: "0.05 s", particles: [velocity, speed], gas: [pressure]}
+  average: {from: "0.2 s", to: "1.8 s", gas: [velocity, solids_fraction]}
   lines:
     - {name: low, from: [0, "5 mm", "20 mm"], to: ["40 mm", "5 mm", "20 mm"], points: 8, depth_average: y,
        thickness: "4 mm", quantity: particle_velocity_z, average: {from: "0.5 s", to: "1.5 s"}}
     - {name: high, from: [0, "5 mm", "50 mm"], to: ["40 mm", "5 mm", "50 mm"], points: 10, quantity: gas_speed}
   probes:
-    - {name: centre, point: ["20 mm", "5 mm", "30 mm"], quantities: [pressure, void_fraction], every: "2 ms"}
-    - {name: bead, particle: 7}
+    - {name: centre, point: ["20 mm", "5 mm", "30 mm"], quantities: [pressure, void_fraction], every: "2 ms",
+       average: {from: "0.25 s", to: "1 s"}}
+    - {name: bead, particle: 7, average: {}}
     - {name: whole, bed: {}}
     - {name: out, side: top, quantities: [left_mass, outflow_rate]}
     - {name: throat, plane: {axis: z, at: "40 mm", box: {min: ["10 mm", 0, 0], max: ["30 mm", "10 mm", 0]}, mean: flow}}

@@ -97,6 +97,14 @@ TEST(CaseFile, ReadsTheBed) {
   EXPECT_EQ(spec.output.lines[0].average.to, 1.5);
   EXPECT_EQ(spec.output.lines[1].average.to, 2);
   EXPECT_EQ(spec.output.probes[0].quantities, (std::vector<std::string>{"pressure", "void_fraction"}));
+  EXPECT_EQ(spec.output.probes[0].average->from, 0.25);
+  EXPECT_EQ(spec.output.probes[0].average->to, 1);
+  EXPECT_EQ(spec.output.probes[1].average->from, 0);
+  EXPECT_EQ(spec.output.probes[1].average->to, 2);  // time.end
+  EXPECT_FALSE(spec.output.probes[2].average);
+  EXPECT_EQ(spec.output.average->window.from, 0.2);
+  EXPECT_EQ(spec.output.average->window.to, 1.8);
+  EXPECT_EQ(spec.output.average->gas, (std::vector<std::string>{"velocity", "solids_fraction"}));
   EXPECT_EQ(*spec.output.probes[1].particle, 7);
   EXPECT_TRUE(spec.output.probes[2].bed);
   EXPECT_EQ(spec.output.probes[2].quantities.front(), "bed_height");
@@ -248,10 +256,15 @@ TEST(CaseErrors, Steps) {
   EXPECT_EQ(bed_errors("time.particle_step=3 us"),
             "--set: time.particle_step: 3e-06 s does not divide the gas step of 0.0001 s; gas_step over a "
             "whole number");
-  EXPECT_EQ(bed_errors("time.end=1e-5"),
-            at("time:") + ": time.gas_step: 0.0001 s is longer than time.end 1e-05 s; at most that\n" +
-                at("average: {from") +
-                ": output.lines.low.average: it begins at 0.5 s, after the end of the run; before 1e-05 s");
+  EXPECT_EQ(
+      bed_errors("time.end=1e-5"),
+      at("time:") + ": time.gas_step: 0.0001 s is longer than time.end 1e-05 s; at most that\n" +
+          at("average: {from: \"0.5 s\"") +
+          ": output.lines.low.average: it begins at 0.5 s, after the end of the run; before 1e-05 s\n" +
+          at("average: {from: \"0.25 s\"") +
+          ": output.probes.centre.average: it begins at 0.25 s, after the end of the run; before 1e-05 s\n" +
+          at("average: {from: \"0.2 s\"") +
+          ": output.average: it begins at 0.2 s, after the end of the run; before 1e-05 s");
   EXPECT_EQ(pair_errors("time.particle_step=1e-3"),
             "--set: time.particle_step: 0.001 s is over the bound of 5.19e-05 s (a fifth of the Rayleigh "
             "time 0.000425 s, a twentieth of the contact time 0.00104 s at 1 m/s); at most the bound, or "
@@ -504,11 +517,28 @@ TEST(CaseErrors, Outputs) {
   EXPECT_EQ(bed_errors("output.lines.low.depth_average=x"),
             "--set: output.lines.low.depth_average: the line runs along that direction; one at right angles "
             "to the line");
+  EXPECT_EQ(bed_errors("output.lines.low.average.to=0.1"),
+            at("average: {from: \"0.5 s\"") +
+                ": output.lines.low.average: from 0.5 to 0.1 s is no time; to later than from");
   EXPECT_EQ(
-      bed_errors("output.lines.low.average.to=0.1"),
-      at("average: {from") + ": output.lines.low.average: from 0.5 to 0.1 s is no time; to later than from");
-  EXPECT_EQ(bed_errors("output.lines.low.average.from=5").substr(0, 70),
-            at("average: {from") + ": output.lines.low.average: from 5 to 1.5 s is no time; to la");
+      bed_errors("output.lines.low.average.from=5").substr(0, 70),
+      at("average: {from: \"0.5 s\"") + ": output.lines.low.average: from 5 to 1.5 s is no time; to la");
+  EXPECT_EQ(
+      bed_errors("output.average.from=1.9"),
+      at("average: {from: \"0.2 s\"") + ": output.average: from 1.9 to 1.8 s is no time; to later than from");
+  EXPECT_EQ(
+      bed_errors("output.average.gas=[temperature]"),
+      "--set: output.average.gas: temperature needs a temperature of the gas; gas.heat, or another name");
+  EXPECT_EQ(pair_errors("output.average={}"),
+            "--set: output.average: it averages the gas, which the case has not; no average");
+  EXPECT_EQ(bed_errors("output.probes.bead.average={from: 2}"),
+            "--set: output.probes.bead.average: from 2 to 2 s is no time; to later than from");
+  EXPECT_EQ(bed_errors("output.probes.bead.average={from: 2, to: 3}"),
+            "--set: output.probes.bead.average: it begins at 2 s, after the end of the run; before 2 s");
+  EXPECT_EQ(
+      bed_errors("output.probes.bead.name=centre_average"),
+      at("average: {from: \"0.25 s\"") +
+          ": output.probes.centre.average: a probe is called centre_average, as its file; another name");
   EXPECT_EQ(bed_errors("output.lines.high.name=low"),
             "--set: output.lines.low.name: another one is called low already; a name of its own");
   EXPECT_EQ(bed_errors("output.lines.high.name=../x"),

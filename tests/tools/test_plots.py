@@ -134,9 +134,26 @@ class Plots(unittest.TestCase):
         done = run("gas_image.py", results, "--field", "speed", "--axis", "z", "--at", "0.035", "-o", picture)
         self.assertIn("speed from 1 to 1", done.stdout)
         done = run("gas_image.py", results, "--field", "heat", "-o", picture)
-        self.assertIn("no field heat; void_fraction, speed", done.stderr)
+        self.assertIn("no field heat; velocity, void_fraction, speed", done.stderr)
         done = run("gas_image.py", results, "--field", "speed", "--at", "1", "-o", picture)
         self.assertIn("0 to 0.02 m", done.stderr)
+        done = run("gas_image.py", results, "--field", "velocity_rms", "-o", picture)
+        self.assertIn("there are no averages of gas", done.stderr)
+        with h5py.File(results / "gas_average.h5", "w") as h5:
+            for axis, cells, length in (("x", 10, 0.1), ("y", 2, 0.02), ("z", 8, 0.08)):
+                h5[f"grid/{axis}"] = np.linspace(0, length, cells + 1)
+            group = h5.create_group("average")
+            group.attrs["from"], group.attrs["time"], group.attrs["step"] = 1.0, 4.0, 4000
+            group["velocity_mean"] = np.ones((8, 2, 10, 3)) * [0, 3, 4.0]
+            group["velocity_rms"] = np.ones((8, 2, 10, 3)) * [0.5, 0, 1.2]
+            group["pressure_mean"] = np.full((8, 2, 10), 7.0)
+        for field, value in (("velocity_mean", 5), ("velocity_mean_z", 4), ("velocity_rms_x", 0.5), ("velocity_rms", 1.3),
+                             ("pressure_mean", 7)):
+            done = run("gas_image.py", results, "--field", field, "-o", picture)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"{field} from {value:g} to {value:g}", done.stdout)
+        done = run("gas_image.py", results, "--field", "heat_mean", "-o", picture)
+        self.assertIn("no field heat_mean; pressure_mean, velocity_mean, velocity_rms", done.stderr)
 
     def test_series(self):
         results = self.folder / "series"

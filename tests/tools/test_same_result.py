@@ -47,6 +47,14 @@ coupling: {drag: beetstra, deposition: divided}
 output:
   checkpoint: {every: "1 ms"}
   snapshots: {every: "10 ms", particles: [velocity], gas: [velocity]}
+  average: {from: "2 ms", gas: [velocity, pressure, void_fraction]}
+  lines:
+    - {name: rise, from: ["2 mm", "6 mm", "10 mm"], to: ["28 mm", "6 mm", "10 mm"], points: 5, depth_average: y, quantity: particle_velocity_z}
+    - {name: wind, from: ["15 mm", "6 mm", 0], to: ["15 mm", "6 mm", "60 mm"], points: 6, quantity: gas_speed}
+  probes:
+    - {name: tap, point: ["15 mm", "6 mm", "5 mm"], every: "5 ms", average: {from: "2 ms"}}
+    - {name: load, wall: sides, quantities: [wall_force_z, gas_force_z], every: "5 ms", average: {}}
+    - {name: bed, bed: {}, every: "5 ms", average: {from: "4 ms"}}
 """
 
 # The block falls apart while it slides and comes to rest as a heap in a corner: contacts slide, stick, roll, open and
@@ -166,7 +174,7 @@ def is_reproducible(name, text, needed):
 
 
 def main():
-    good = is_reproducible("bed", CASE, {"dem/position_radius": 100})
+    good = is_reproducible("bed", CASE, {"dem/position_radius": 100, "output/average/velocity/squares": 200, "output/lines/rise/moments": 10, "probes/load/average/columns": 10})
     good &= is_reproducible("sprayed bed", SPRAYED, {"spray/state": 100, "spray/hit_record": 100, "heat/film": 100, "wetness/all": 5})
     good &= is_reproducible("block", BLOCK, {"dem/history/spring": 100, "dem/wall_history/spring": 100})
     sys.exit(0 if good else 1)

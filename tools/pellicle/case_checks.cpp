@@ -52,6 +52,7 @@ class Checker {
       problems_.add(spec_.where("droplets.momentum"), "there is no gas to push; one_way, or gas");
     for (const auto& line : spec_.output.lines) check_line(line);
     for (const auto& probe : spec_.output.probes) check_probe(probe);
+    check_gas_average();
     for (const auto& field : spec_.output.snapshots.gas) {
       if (spec_.gas) check_carried(": output.snapshots", "gas", field);
     }
@@ -496,15 +497,28 @@ class Checker {
       wrong(line.where, "depth_average",
             "the line runs along that direction; one at right angles to the line");
     }
-    if (!(line.average.to > line.average.from)) {
-      wrong(line.where, "average",
-            fmt::format("from {:g} to {:g} s is no time; to later than from", line.average.from,
-                        line.average.to));
-    } else if (line.average.from >= spec_.time.end) {
-      wrong(line.where, "average",
-            fmt::format("it begins at {:g} s, after the end of the run; before {:g} s", line.average.from,
-                        spec_.time.end));
+    check_window(spec_.where(path_of(line.where) + ".average"), line.average);
+  }
+
+  /// Of an average whose key is at `where`.
+  void check_window(const std::string& where, const WindowSpec& window) {
+    if (!(window.to > window.from)) {
+      problems_.add(
+          where, fmt::format("from {:g} to {:g} s is no time; to later than from", window.from, window.to));
+    } else if (window.from >= spec_.time.end) {
+      problems_.add(where, fmt::format("it begins at {:g} s, after the end of the run; before {:g} s",
+                                       window.from, spec_.time.end));
     }
+  }
+
+  void check_gas_average() {
+    if (!spec_.output.average) return;
+    check_window(spec_.where("output.average"), spec_.output.average->window);
+    if (!spec_.gas) {
+      wrong_key("output.average", "it averages the gas, which the case has not; no average");
+      return;
+    }
+    for (const auto& field : spec_.output.average->gas) check_carried(": output.average", "gas", field);
   }
 
   void check_plane(const ProbeSpec& probe) {
@@ -534,6 +548,14 @@ class Checker {
   }
 
   void check_probe(const ProbeSpec& probe) {
+    if (probe.average) {
+      check_window(spec_.where(path_of(probe.where) + ".average"), *probe.average);
+      const std::string file = probe.name + "_average";
+      if (std::any_of(spec_.output.probes.begin(), spec_.output.probes.end(),
+                      [&](const ProbeSpec& other) { return other.name == file; })) {
+        wrong(probe.where, "average", fmt::format("a probe is called {}, as its file; another name", file));
+      }
+    }
     if (probe.particle) {
       for (const auto& name : probe.quantities) check_followed(probe.where, "quantities", name);
     }

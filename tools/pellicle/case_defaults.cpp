@@ -148,6 +148,10 @@ void fill_in_defaults(CaseSpec& spec, core::InputProblems& problems) {
   }
   for (auto& probe : spec.output.probes) {
     if (probe.quantities.empty()) probe.quantities = all_quantities(spec, probe);
+    if (probe.average && probe.average->to == 0) probe.average->to = spec.time.end;
+  }
+  if (spec.output.average && spec.output.average->window.to == 0) {
+    spec.output.average->window.to = spec.time.end;
   }
   for (auto& zone : spec.output.zones) {
     if (zone.longest_time == 0) zone.longest_time = spec.time.end;

@@ -27,6 +27,18 @@ void describe_snapshots(Keys& keys, SnapshotSpec& snapshots) {
   keys.choices({"gas", "fields of gas.h5"}, gas_snapshot_fields, {}, snapshots.gas);
 }
 
+void describe_window(Keys& keys, WindowSpec& window) {
+  keys.real({"from", "start"}, interval, window.from);
+  real_or_unset(keys, {"to", "end", Need::has_default, "time.end"}, {dimension::duration, range::positive},
+                window.to);
+}
+
+void describe_gas_average(Keys& keys, GasAverageSpec& average) {
+  describe_window(keys, average.window);
+  keys.choices({"gas", "fields of gas_average.h5, of each its mean and the RMS of the fluctuation about it"},
+               gas_snapshot_fields, Size{1}, average.gas);
+}
+
 void describe_line(Keys& keys, LineSpec& line) {
   if (keys.reading()) line.where = keys.where();
   keys.text({"name", "of the file lines/NAME.csv", Need::required}, TextRule::name, line.name);
@@ -51,11 +63,7 @@ void describe_line(Keys& keys, LineSpec& line) {
   keys.choice({"quantity", "what is averaged", Need::required}, line_quantities, quantity);
   if (quantity) line.quantity = line_quantities[static_cast<std::size_t>(*quantity)].name;
   keys.section<WindowSpec>({"average", "time over which samples are taken, one every gas step"}, line.average,
-                           [](Keys& inner, WindowSpec& window) {
-                             inner.real({"from", "start"}, interval, window.from);
-                             real_or_unset(inner, {"to", "end", Need::has_default, "time.end"},
-                                           {dimension::duration, range::positive}, window.to);
-                           });
+                           describe_window);
 }
 
 void describe_plane_probe(Keys& keys, PlaneProbeSpec& plane) {
@@ -102,6 +110,10 @@ void describe_probe(Keys& keys, ProbeSpec& probe) {
   keys.choices({"quantities", "columns of the file", Need::has_default, "all that fit"}, probe_quantities,
                Size{1}, positions);
   keys.real({"every", "time between two rows"}, {dimension::duration, range::positive}, probe.every);
+  keys.section<WindowSpec>(
+      {"average",
+       "time over which mean, RMS, smallest and largest of each column are formed, from every gas step"},
+      probe.average, describe_window);
   if (!keys.reading()) return;
   const core::ModelList allowed = quantities_of(probe);
   probe.quantities.clear();
@@ -228,6 +240,9 @@ void describe_output(Keys& keys, CaseSpec& spec) {
                                   });
         inner.section<SnapshotSpec>({"snapshots", "fields over time, for ParaView"}, output.snapshots,
                                     describe_snapshots);
+        inner.section<GasAverageSpec>(
+            {"average", "time averages of fields of the gas, cell by cell, from every gas step"},
+            output.average, describe_gas_average);
         inner.list<LineSpec>({"lines", "time-averaged profiles along lines"}, {}, output.lines,
                              describe_line);
         inner.list<ProbeSpec>({"probes",

@@ -353,6 +353,12 @@ struct SnapshotSpec {
   std::vector<std::string> gas{"velocity", "pressure", "void_fraction"};
 };
 
+/// Time averages of the gas's fields: gas_average.h5.
+struct GasAverageSpec {
+  WindowSpec window;
+  std::vector<std::string> gas{"velocity", "pressure", "void_fraction"};  ///< names of fields
+};
+
 /// Time-averaged profile along a line: bins of length / points, height `thickness`.
 struct LineSpec {
   std::string where;
@@ -390,7 +396,8 @@ struct ProbeSpec {
   bool bed = false;
   bool coating = false;
   std::vector<std::string> quantities;
-  Real every = 1e-3;  ///< [s]
+  Real every = 1e-3;                  ///< [s]
+  std::optional<WindowSpec> average;  ///< of which mean, RMS, smallest and largest are written too
 };
 
 /// Distribution of a particle quantity at given times.
@@ -438,6 +445,7 @@ struct WetnessSpec {
 struct OutputSpec {
   Real checkpoint_every = 0;  ///< [s]; 0: only at the end
   SnapshotSpec snapshots;
+  std::optional<GasAverageSpec> average;
   std::vector<LineSpec> lines;
   std::vector<ProbeSpec> probes;
   std::vector<HistogramSpec> histograms;

@@ -1,11 +1,39 @@
 #include "tools/pellicle/gas_fields.hpp"
 
 #include <stdexcept>
+#include <string>
 
 #include "cfd/gas_property_laws.hpp"
 #include "tools/pellicle/output_fields.hpp"
 
 namespace pellicle::tools {
+
+GasFieldNumbers gas_field(const GasFields& gas, std::string_view name) {
+  if (name == "velocity") return {&gas.velocity.data()->x};
+  if (name == "pressure_gradient") return {&gas.pressure_gradient.data()->x};
+  if (name == "pressure") return {gas.pressure.data()};
+  if (name == "void_fraction") return {gas.void_fraction.data()};
+  if (name == "solids_fraction") return {gas.void_fraction.data(), true};
+  if (name == "temperature") return {gas.temperature.data()};
+  if (name == "vapour_mass_fraction") return {gas.vapour_mass_fraction.data()};
+  if (name == "density") return {gas.density.data()};
+  if (name == "turbulent_kinetic_energy") return {gas.turbulent_kinetic_energy.data()};
+  if (name == "turbulent_dissipation") return {gas.turbulent_dissipation.data()};
+  if (name == "eddy_viscosity") return {gas.eddy_viscosity.data()};
+  throw std::logic_error("no gas field " + std::string(name));
+}
+
+std::size_t gas_field_components(std::string_view name) {
+  return name == "velocity" || name == "pressure_gradient" ? 3 : 1;
+}
+
+std::vector<std::size_t> gas_field_shape(const CartesianGrid& grid, std::string_view name) {
+  const Index3 n = grid.cells();
+  std::vector<std::size_t> shape{static_cast<std::size_t>(n.z), static_cast<std::size_t>(n.y),
+                                 static_cast<std::size_t>(n.x)};
+  if (gas_field_components(name) == 3) shape.push_back(3);
+  return shape;
+}
 
 Real gas_quantity(const GasFields& gas, int quantity, Index cell) {
   switch (quantity) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <string_view>
+#include <vector>
 
 #include "core/cartesian_grid.hpp"
 #include "core/types.hpp"
@@ -31,6 +33,23 @@ struct GasFields {
 
   Real void_fraction_of(Index cell) const { return void_fraction.extent(0) > 0 ? void_fraction(cell) : 1; }
 };
+
+/// A field of a gas snapshot as the solver holds it: the numbers of a cell one after the other, cell by cell.
+struct GasFieldNumbers {
+  const Real* numbers = nullptr;  ///< null: 1 everywhere
+  bool complement = false;        ///< what is missing to 1 instead
+  Real operator()(std::size_t n) const {
+    const Real number = numbers != nullptr ? numbers[n] : 1;
+    return complement ? 1 - number : number;
+  }
+};
+
+/// The field of gas_snapshot_fields (output_fields.hpp) of this name; throws std::logic_error if there is none.
+GasFieldNumbers gas_field(const GasFields& gas, std::string_view name);
+/// Numbers a cell: 3 of a vector, else 1.
+std::size_t gas_field_components(std::string_view name);
+/// Shape of its array: nz, ny, nx and, of a vector, 3.
+std::vector<std::size_t> gas_field_shape(const CartesianGrid& grid, std::string_view name);
 
 /// Value of gas_quantities[quantity] (output_fields.hpp) in a cell.
 Real gas_quantity(const GasFields& gas, int quantity, Index cell);

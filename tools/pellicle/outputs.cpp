@@ -22,6 +22,9 @@ Outputs::Outputs(const CaseSpec& spec, const ResultsFolder& folder, core::TimeCo
       zones_(spec.output.zones, time, folder, time_of(time, resume_step)),
       wetness_(spec.output.wetness, time, folder, time_of(time, resume_step)),
       snapshot_schedule_(time.schedule(spec.output.snapshots.every, "output.snapshots.every")) {
+  if (gas_grid != nullptr && spec.output.average) {
+    gas_average_.emplace(*spec.output.average, time, *gas_grid);
+  }
   if (snapshot_schedule_.steps == 0) return;
   if (!spec.particles.empty()) {
     particle_snapshots_.emplace(folder.path(), spec.output.snapshots.particles, resume_step);
@@ -41,6 +44,7 @@ void Outputs::sample(const OutputState& state, bool last) {
   histograms_.sample(state, last);
   zones_.sample(state, last);
   wetness_.sample(state, last);
+  if (gas_average_ && state.gas != nullptr) gas_average_->sample(state.step, *state.gas);
   if (!snapshot_schedule_.due(state.step) && !last) return;
   if (particle_snapshots_) particle_snapshots_->write(state.step, state.time, state.host_particles());
   if (spray_snapshots_ && state.spray != nullptr) {
@@ -51,6 +55,7 @@ void Outputs::sample(const OutputState& state, bool last) {
 
 void Outputs::flush() {
   lines_.write(folder_);
+  if (gas_average_) gas_average_->write(folder_.path());
   probes_.flush();
   histograms_.flush();
   zones_.flush();

@@ -5,6 +5,7 @@
 
 #include "core/time_control.hpp"
 #include "tools/pellicle/case_spec.hpp"
+#include "tools/pellicle/gas_average.hpp"
 #include "tools/pellicle/lines.hpp"
 #include "tools/pellicle/probes.hpp"
 #include "tools/pellicle/results_folder.hpp"
@@ -14,7 +15,7 @@
 
 namespace pellicle::tools {
 
-/// Snapshots, lines, probes, histograms, zones and wetness of a case.
+/// Snapshots, averages, lines, probes, histograms, zones and wetness of a case.
 class Outputs {
  public:
   /// `gas_grid` is null without gas. `resume_step` is the step of the checkpoint that the run goes on from: files
@@ -28,17 +29,19 @@ class Outputs {
   /// even between two.
   void sample(const OutputState& state, bool last = false);
 
-  /// Hands all rows to the operating system and rewrites the lines; to be called before a checkpoint and at the end.
+  /// Hands all rows to the operating system and rewrites lines and averages; to be called before a checkpoint and at the end.
   void flush();
 
   /// The averages so far.
   void save(core::CheckpointWriter& checkpoint) const {
     lines_.save(checkpoint);
     probes_.save(checkpoint);
+    if (gas_average_) gas_average_->save(checkpoint);
   }
   void load(const core::CheckpointReader& checkpoint) {
     lines_.load(checkpoint);
     probes_.load(checkpoint);
+    if (gas_average_) gas_average_->load(checkpoint);
   }
 
  private:
@@ -52,6 +55,7 @@ class Outputs {
   std::optional<ParticleSnapshots> particle_snapshots_;
   std::optional<SpraySnapshots> spray_snapshots_;
   std::optional<GasSnapshots> gas_snapshots_;
+  std::optional<GasAverage> gas_average_;
 };
 
 }  // namespace pellicle::tools

@@ -84,6 +84,10 @@ const WallFigures& find_wall(const OutputState& state, const std::string& name) 
   return found == state.walls->end() ? none : *found;
 }
 
+dem::SideTotals left_through(const OutputState& state, int side) {
+  return state.sides != nullptr ? (*state.sides)[static_cast<std::size_t>(side)] : dem::SideTotals{};
+}
+
 }  // namespace
 
 const HostParticles& OutputState::host_particles() const {
@@ -93,7 +97,7 @@ const HostParticles& OutputState::host_particles() const {
 
 Probes::Probes(const std::vector<ProbeSpec>& specs, core::TimeControl& time, const ResultsFolder& folder,
                const Box& domain, const CartesianGrid* gas_grid, std::optional<Real> resume_time)
-    : floor_(domain.min.z) {
+    : folder_(folder), floor_(domain.min.z) {
   for (const auto& spec : specs) {
     auto quantities = find_all(quantities_of(spec), spec);
     const Index cell = cell_of(spec, gas_grid);
@@ -101,99 +105,134 @@ Probes::Probes(const std::vector<ProbeSpec>& specs, core::TimeControl& time, con
     const core::Schedule schedule = spec.every > 0
                                         ? time.schedule(spec.every, "output.probes." + spec.name + ".every")
                                         : core::Schedule{1};
-    probes_.push_back({spec,
-                       schedule,
-                       std::move(quantities),
-                       cell,
-                       section_of(spec, gas_grid),
-                       core::CsvSeries(folder.csv("probes", spec.name), probe_header(spec), resume_time),
-                       {},
-                       {},
-                       0});
+    probes_.push_back({spec, schedule, std::move(quantities), cell, section_of(spec, gas_grid),
+                       core::CsvSeries(folder.csv("probes", spec.name), probe_header(spec), resume_time)});
+    if (!spec.average) continue;
+    const core::StepWindow window =
+        time.window(spec.average->from, spec.average->to, "output.probes." + spec.name + ".average");
+    probes_.back().average.emplace(spec, window, time.gas_step());
   }
 }
 
-void Probes::append(Probe& probe, const OutputState& state) {
-  std::vector<double> row{state.time};
+std::vector<double> Probes::values(const Probe& probe, const OutputState& state, const Past& past) const {
+  std::vector<double> values;
+  const Real interval = state.time - past.time;
   if (probe.spec.bed) {
     const BedFigures bed = compute_bed_figures(state.host_particles(), floor_);
     for (const auto& name : probe.spec.quantities)
-      row.push_back(bed_quantity(name, bed, state.gas, state.contacts));
+      values.push_back(bed_quantity(name, bed, state.gas, state.contacts));
   } else if (probe.spec.coating) {
     const CoatingFigures coating = compute_coating_figures(state.host_particles());
-    for (const auto& name : probe.spec.quantities) row.push_back(coating_quantity(name, coating));
+    for (const auto& name : probe.spec.quantities) values.push_back(coating_quantity(name, coating));
   } else if (probe.spec.particle) {
     ParticleSample particle;
     const bool found =
         state.particles != nullptr && finder_.find(*state.particles, *probe.spec.particle, particle);
     for (const int quantity : probe.quantities) {
-      row.push_back(found ? particle_quantity(quantity, particle) : std::nan(""));
+      values.push_back(found ? particle_quantity(quantity, particle) : std::nan(""));
     }
   } else if (probe.spec.wall) {
     const WallFigures& now = find_wall(state, *probe.spec.wall);
     for (const int quantity : probe.quantities)
-      row.push_back(wall_quantity(quantity, now, probe.before, state.time - probe.time_before));
-    probe.before = now;
-    probe.time_before = state.time;
+      values.push_back(wall_quantity(quantity, now, past.wall, interval));
   } else if (probe.spec.side) {
-    const dem::SideTotals now = state.sides != nullptr
-                                    ? (*state.sides)[static_cast<std::size_t>(*probe.spec.side)]
-                                    : dem::SideTotals{};
+    const dem::SideTotals now = left_through(state, *probe.spec.side);
     for (const int quantity : probe.quantities)
-      row.push_back(side_quantity(quantity, now, probe.left_before, state.time - probe.time_before));
-    probe.left_before = now;
-    probe.time_before = state.time;
+      values.push_back(side_quantity(quantity, now, past.left, interval));
   } else if (probe.plane) {
-    for (const int quantity : probe.quantities) row.push_back(probe.plane->quantity(*state.gas, quantity));
+    for (const int quantity : probe.quantities) values.push_back(probe.plane->quantity(*state.gas, quantity));
   } else {
-    for (const int quantity : probe.quantities) row.push_back(gas_quantity(*state.gas, quantity, probe.cell));
+    for (const int quantity : probe.quantities)
+      values.push_back(gas_quantity(*state.gas, quantity, probe.cell));
   }
-  probe.file.append(row);
+  return values;
 }
 
 void Probes::sample(const OutputState& state) {
   for (auto& probe : probes_) {
-    if (probe.schedule.due(state.step)) append(probe, state);
+    const bool has_past = probe.spec.wall || probe.spec.side;
+    const bool due = probe.schedule.due(state.step);
+    std::vector<double> now;
+    if (due) {
+      now = values(probe, state, probe.row);
+      std::vector<double> row{state.time};
+      row.insert(row.end(), now.begin(), now.end());
+      probe.file.append(row);
+    }
+    if (probe.average && probe.average->wants(state.step) && (!has_past || probe.step)) {
+      // Of walls and sides a row is a mean since the row before, a sample one since the step before.
+      if (!due || has_past) now = values(probe, state, has_past ? *probe.step : Past{});
+      probe.average->add(state.step, now);
+    }
+    if (!has_past || !(due || probe.average)) continue;
+    Past past{{}, {}, state.time};
+    if (probe.spec.wall) past.wall = find_wall(state, *probe.spec.wall);
+    if (probe.spec.side) past.left = left_through(state, *probe.spec.side);
+    if (probe.average) probe.step = past;
+    if (due) probe.row = std::move(past);
   }
 }
 
 void Probes::flush() {
-  for (auto& probe : probes_) probe.file.flush();
+  for (auto& probe : probes_) {
+    probe.file.flush();
+    if (probe.average)
+      core::write_csv(folder_.csv("probes", probe.spec.name + "_average"), probe.average->table());
+  }
+}
+
+void Probes::save(core::CheckpointWriter& checkpoint, const std::string& path, const Probe& probe,
+                  const Past& past) {
+  checkpoint.write(path + "/time", past.time);
+  if (probe.spec.side) {
+    checkpoint.write(path + "/left_mass", past.left.mass);
+    checkpoint.write(path + "/left_particles", past.left.particles);
+    return;
+  }
+  checkpoint.write(path + "/impulse", past.wall.impulse);
+  checkpoint.write(path + "/angular_impulse", past.wall.angular_impulse);
+  checkpoint.write(path + "/gas_impulse", past.wall.gas_impulse);
+  checkpoint.write(path + "/heat", past.wall.heat.value_or(0));
+}
+
+Probes::Past Probes::load(const core::CheckpointReader& checkpoint, const std::string& path,
+                          const Probe& probe) {
+  Past past;
+  past.time = checkpoint.read_double(path + "/time");
+  if (probe.spec.side) {
+    past.left = {checkpoint.read_int64(path + "/left_particles"),
+                 checkpoint.read_double(path + "/left_mass")};
+    return past;
+  }
+  past.wall.impulse = checkpoint.read_vec3(path + "/impulse");
+  past.wall.angular_impulse = checkpoint.read_vec3(path + "/angular_impulse");
+  past.wall.gas_impulse = checkpoint.read_vec3(path + "/gas_impulse");
+  past.wall.heat = checkpoint.read_double(path + "/heat");
+  return past;
 }
 
 void Probes::save(core::CheckpointWriter& checkpoint) const {
   for (const auto& probe : probes_) {
-    if (!probe.spec.wall && !probe.spec.side) continue;
     const std::string path = "probes/" + probe.spec.name;
-    checkpoint.write(path + "/time", probe.time_before);
-    if (probe.spec.side) {
-      checkpoint.write(path + "/left_mass", probe.left_before.mass);
-      checkpoint.write(path + "/left_particles", probe.left_before.particles);
-      continue;
-    }
-    checkpoint.write(path + "/impulse", probe.before.impulse);
-    checkpoint.write(path + "/angular_impulse", probe.before.angular_impulse);
-    checkpoint.write(path + "/gas_impulse", probe.before.gas_impulse);
-    checkpoint.write(path + "/heat", probe.before.heat.value_or(0));
+    if (probe.spec.wall || probe.spec.side) save(checkpoint, path, probe, probe.row);
+    if (!probe.average) continue;
+    probe.average->save(checkpoint, path + "/average");
+    if ((probe.spec.wall || probe.spec.side) && probe.step)
+      save(checkpoint, path + "/average", probe, *probe.step);
   }
 }
 
 void Probes::load(const core::CheckpointReader& checkpoint) {
   for (auto& probe : probes_) {
     const std::string path = "probes/" + probe.spec.name;
-    // The first row of a probe that is new with this run is a mean since t = 0.
-    const char* const what = probe.spec.wall ? "/impulse" : "/left_mass";
-    if ((!probe.spec.wall && !probe.spec.side) || !checkpoint.has(path + what)) continue;
-    probe.time_before = checkpoint.read_double(path + "/time");
-    if (probe.spec.side) {
-      probe.left_before = {checkpoint.read_int64(path + "/left_particles"),
-                           checkpoint.read_double(path + what)};
-      continue;
-    }
-    probe.before.impulse = checkpoint.read_vec3(path + "/impulse");
-    probe.before.angular_impulse = checkpoint.read_vec3(path + "/angular_impulse");
-    probe.before.gas_impulse = checkpoint.read_vec3(path + "/gas_impulse");
-    probe.before.heat = checkpoint.read_double(path + "/heat");
+    const bool goes_on = probe.average && probe.average->load(checkpoint, path + "/average");
+    if (!probe.spec.wall && !probe.spec.side) continue;
+    // The first row of a probe that is new with this run is a mean since t = 0. A sample would count that as a step.
+    const std::string what = probe.spec.wall ? "/impulse" : "/left_mass";
+    if (checkpoint.has(path + what)) probe.row = load(checkpoint, path, probe);
+    probe.step.reset();
+    if (goes_on && checkpoint.has(path + "/average" + what))
+      probe.step = load(checkpoint, path + "/average", probe);
   }
 }
 

@@ -15,6 +15,7 @@
 #include "tools/pellicle/find_particle.hpp"
 #include "tools/pellicle/gas_fields.hpp"
 #include "tools/pellicle/plane_section.hpp"
+#include "tools/pellicle/probe_average.hpp"
 #include "tools/pellicle/results_folder.hpp"
 #include "tools/pellicle/wall_figures.hpp"
 #include "tools/pellicle/zone_outputs.hpp"
@@ -54,13 +55,20 @@ class Probes {
          const Box& domain, const CartesianGrid* gas_grid, std::optional<Real> resume_time);
 
   void sample(const OutputState& state);
+  /// Hands all rows to the operating system and replaces the averages.
   void flush();
 
-  /// What walls had received, and what had left, when their last rows were written.
+  /// What walls had received, and what had left, when their last rows were written; the averages.
   void save(core::CheckpointWriter& checkpoint) const;
   void load(const core::CheckpointReader& checkpoint);
 
  private:
+  /// What a wall had received, or what had left through a side, at an earlier time.
+  struct Past {
+    WallFigures wall{};
+    dem::SideTotals left{};
+    Real time = 0;  ///< [s]
+  };
   struct Probe {
     ProbeSpec spec;
     core::Schedule schedule;
@@ -68,12 +76,18 @@ class Probes {
     Index cell = 0;               ///< of a point
     std::optional<PlaneSection> plane;
     core::CsvSeries file;
-    WallFigures before{};           ///< at the last row, of a wall
-    dem::SideTotals left_before{};  ///< at the last row, of a side
-    Real time_before = 0;           ///< [s]
+    Past row{};  ///< at the last row
+    std::optional<ProbeAverage> average{};
+    std::optional<Past> step =
+        Past{};  ///< at the last outer step, with an average; unset if that is not known
   };
-  void append(Probe& probe, const OutputState& state);
+  /// One value a quantity; rates are means since `past`.
+  std::vector<double> values(const Probe& probe, const OutputState& state, const Past& past) const;
+  static void save(core::CheckpointWriter& checkpoint, const std::string& path, const Probe& probe,
+                   const Past& past);
+  static Past load(const core::CheckpointReader& checkpoint, const std::string& path, const Probe& probe);
 
+  const ResultsFolder& folder_;
   std::vector<Probe> probes_;
   ParticleFinder finder_;
   Real floor_;

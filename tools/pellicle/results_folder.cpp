@@ -14,9 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 9> files{"case.yaml",    "run.log",        "summary.json",
-                                           "particles.h5", "particles.xdmf", "gas.h5",
-                                           "gas.xdmf",     "checkpoint.h5",  "histograms.h5"};
+constexpr std::array<const char*, 13> files{
+    "case.yaml",        "run.log",       "summary.json", "particles.h5", "particles.xdmf",
+    "spray.h5",         "spray.xdmf",    "gas.h5",       "gas.xdmf",     "gas_average.h5",
+    "gas_average.xdmf", "checkpoint.h5", "histograms.h5"};
 constexpr std::array<std::string_view, 4> subfolders{"lines", "probes", "histograms", "zones"};
 
 bool is_name_of_results(const std::string& name) {

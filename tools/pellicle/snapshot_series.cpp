@@ -16,6 +16,8 @@ constexpr const char* group_prefix = "step";
 
 std::string group_name(std::int64_t step) { return fmt::format("{}{:010}", group_prefix, step); }
 
+}  // namespace
+
 std::vector<SnapshotArray> arrays_of(const core::Hdf5File& file, const std::string& group) {
   std::vector<SnapshotArray> arrays;
   for (const auto& name : file.members(group)) {
@@ -25,11 +27,9 @@ std::vector<SnapshotArray> arrays_of(const core::Hdf5File& file, const std::stri
   return arrays;
 }
 
-}  // namespace
-
 SnapshotSeries::SnapshotSeries(const std::filesystem::path& folder, const std::string& name,
-                               Describe describe, std::optional<std::int64_t> resume_step)
-    : h5_(folder / (name + ".h5")), xdmf_(folder / (name + ".xdmf")), describe_(std::move(describe)) {
+                               DescribeSnapshot describe, std::optional<std::int64_t> resume_step)
+    : h5_(folder / (name + ".h5")), describe_(std::move(describe)) {
   if (resume_step && std::filesystem::exists(h5_)) {
     try {
       resume(*resume_step);
@@ -43,7 +43,7 @@ SnapshotSeries::SnapshotSeries(const std::filesystem::path& folder, const std::s
     }
   } else {
     std::filesystem::remove(h5_);
-    std::filesystem::remove(xdmf_);
+    std::filesystem::remove(std::filesystem::path(h5_).replace_extension(".xdmf"));
   }
 }
 
@@ -92,17 +92,18 @@ void SnapshotSeries::add(std::int64_t step, Real time,
   write_xdmf();
 }
 
-void SnapshotSeries::write_xdmf() const {
+void write_xdmf(const std::filesystem::path& h5, const std::vector<SnapshotRecord>& records,
+                const DescribeSnapshot& describe) {
   std::string text =
       "<?xml version=\"1.0\" ?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
       "<Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  const std::string h5_name = h5_.filename().string();
-  for (const auto& record : records_) {
+  const std::string h5_name = h5.filename().string();
+  for (const auto& record : records) {
     text += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">\n<Time Value=\"{:.12g}\"/>\n{}</Grid>\n",
-                        record.group, record.time, describe_(h5_name, record));
+                        record.group, record.time, describe(h5_name, record));
   }
   text += "</Grid>\n</Domain>\n</Xdmf>\n";
-  core::write_file_atomically(xdmf_, text);
+  core::write_file_atomically(std::filesystem::path(h5).replace_extension(".xdmf"), text);
 }
 
 }  // namespace pellicle::tools

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 
+#include "core/error.hpp"
+#include "core/files.hpp"
 #include "core/hdf5_file.hpp"
 
 namespace pellicle::tools {
@@ -178,35 +181,22 @@ std::string describe_gas(const std::string& h5_name, const SnapshotRecord& recor
 
 void write_gas_field(core::Hdf5File& file, const std::string& group, const std::string& field,
                      const GasFields& gas) {
-  const Index3 n = gas.grid->cells();
-  const auto count = static_cast<std::size_t>(gas.grid->cell_count());
-  std::vector<std::size_t> shape{static_cast<std::size_t>(n.z), static_cast<std::size_t>(n.y),
-                                 static_cast<std::size_t>(n.x)};
+  const GasFieldNumbers numbers = gas_field(gas, field);
+  const std::vector<std::size_t> shape = gas_field_shape(*gas.grid, field);
+  const std::size_t count = std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
   const std::string name = group + "/" + field;
-  if (field == "velocity" || field == "pressure_gradient") {
-    shape.push_back(3);
-    const auto& values = field == "velocity" ? gas.velocity : gas.pressure_gradient;
-    file.write(name, std::span<const double>(&values.data()->x, 3 * count), shape);
-  } else if (field == "pressure" || field == "temperature" || field == "vapour_mass_fraction" ||
-             field == "density" || field == "turbulent_kinetic_energy" || field == "turbulent_dissipation" ||
-             field == "eddy_viscosity") {
-    const auto& values = field == "pressure"                   ? gas.pressure
-                         : field == "temperature"              ? gas.temperature
-                         : field == "density"                  ? gas.density
-                         : field == "turbulent_kinetic_energy" ? gas.turbulent_kinetic_energy
-                         : field == "turbulent_dissipation"    ? gas.turbulent_dissipation
-                         : field == "eddy_viscosity"           ? gas.eddy_viscosity
-                                                               : gas.vapour_mass_fraction;
-    file.write(name, std::span<const double>(values.data(), count), shape);
-  } else if (field == "void_fraction" || field == "solids_fraction") {
-    std::vector<double> values(count);
-    for (std::size_t c = 0; c < count; ++c) {
-      const Real void_fraction = gas.void_fraction_of(static_cast<Index>(c));
-      values[c] = field == "void_fraction" ? void_fraction : 1 - void_fraction;
-    }
-    file.write(name, std::span<const double>(values), shape);
-  } else {
-    throw std::logic_error("no gas field " + field);
+  if (numbers.numbers != nullptr && !numbers.complement) {
+    file.write(name, std::span<const double>(numbers.numbers, count), shape);
+    return;
+  }
+  std::vector<double> values(count);
+  for (std::size_t n = 0; n < count; ++n) values[n] = numbers(n);
+  file.write(name, std::span<const double>(values), shape);
+}
+
+void write_grid(core::Hdf5File& file, const CartesianGrid& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    file.write(fmt::format("grid/{}", "xyz"[axis]), std::span<const double>(grid.faces(axis)));
   }
 }
 
@@ -262,11 +252,7 @@ void SpraySnapshots::write(std::int64_t step, Real time, const HostParcels& parc
 GasSnapshots::GasSnapshots(const std::filesystem::path& folder, std::vector<std::string> fields,
                            const CartesianGrid& grid, std::optional<std::int64_t> resume_step)
     : fields_(std::move(fields)), series_(folder, "gas", describe_gas, resume_step) {
-  series_.write_once("grid", [&](core::Hdf5File& file) {
-    for (int axis = 0; axis < 3; ++axis) {
-      file.write(fmt::format("grid/{}", "xyz"[axis]), std::span<const double>(grid.faces(axis)));
-    }
-  });
+  series_.write_once("grid", [&](core::Hdf5File& file) { write_grid(file, grid); });
   if (!series_.records().empty()) series_.write_xdmf();
 }
 
@@ -275,6 +261,27 @@ void GasSnapshots::write(std::int64_t step, Real time, const GasFields& gas) {
   series_.add(step, time, [&](core::Hdf5File& file, const std::string& group) {
     for (const auto& field : fields_) write_gas_field(file, group, field, gas);
   });
+}
+
+void replace_gas_snapshot(const std::filesystem::path& folder, const std::string& name,
+                          const CartesianGrid& grid, std::int64_t step, Real time,
+                          const std::function<void(core::Hdf5File&, const std::string& group)>& write) {
+  const std::string group = "average";
+  const std::filesystem::path h5 = folder / (name + ".h5"), temporary = core::temporary_name(h5);
+  SnapshotRecord record{group, step, time, {}};
+  {
+    core::Hdf5File file(temporary, core::Hdf5File::Mode::create);
+    write_grid(file, grid);
+    write(file, group);
+    file.set_attribute(group, "step", step);
+    file.set_attribute(group, "time", time);
+    record.arrays = arrays_of(file, group);
+    file.close();
+  }
+  std::error_code error;
+  std::filesystem::rename(temporary, h5, error);
+  if (error) throw RunError(h5.string() + ": cannot be replaced: " + error.message());
+  write_xdmf(h5, {record}, describe_gas);
 }
 
 }  // namespace pellicle::tools

@@ -37,15 +37,21 @@ struct SnapshotRecord {
   std::vector<SnapshotArray> arrays;
 };
 
+/// Writes one grid of the XDMF file: topology, geometry, attributes.
+using DescribeSnapshot = std::function<std::string(const std::string& h5_name, const SnapshotRecord&)>;
+
+/// The arrays of a group, as the XDMF file names them.
+std::vector<SnapshotArray> arrays_of(const core::Hdf5File& file, const std::string& group);
+/// Replaces the XDMF file beside an HDF5 file by one of these snapshots.
+void write_xdmf(const std::filesystem::path& h5, const std::vector<SnapshotRecord>& records,
+                const DescribeSnapshot& describe);
+
 /// A time series of groups in one HDF5 file with its XDMF description: what particles and gas have in common.
 class SnapshotSeries {
  public:
-  /// Writes one grid of the XDMF file: topology, geometry, attributes.
-  using Describe = std::function<std::string(const std::string& h5_name, const SnapshotRecord&)>;
-
   /// Begins FOLDER/NAME.h5, or with `resume_step` goes on with it, dropping later snapshots (write_xdmf() then has to
   /// follow). A file that cannot be read any more is kept as NAME.h5.damaged, with a warning.
-  SnapshotSeries(const std::filesystem::path& folder, const std::string& name, Describe describe,
+  SnapshotSeries(const std::filesystem::path& folder, const std::string& name, DescribeSnapshot describe,
                  std::optional<std::int64_t> resume_step);
 
   /// Adds what does not change in time, unless it is there already.
@@ -55,7 +61,7 @@ class SnapshotSeries {
            const std::function<void(core::Hdf5File&, const std::string& group)>& write);
 
   /// Replaces the XDMF file by one of the present snapshots.
-  void write_xdmf() const;
+  void write_xdmf() const { tools::write_xdmf(h5_, records_, describe_); }
 
   const std::vector<SnapshotRecord>& records() const { return records_; }
   /// Shape of an array outside the snapshots; empty if it is not there.
@@ -64,8 +70,8 @@ class SnapshotSeries {
  private:
   void resume(std::int64_t step);
 
-  std::filesystem::path h5_, xdmf_;
-  Describe describe_;
+  std::filesystem::path h5_;
+  DescribeSnapshot describe_;
   std::vector<SnapshotRecord> records_;
 };
 
@@ -125,5 +131,12 @@ class GasSnapshots {
   std::vector<std::string> fields_;
   SnapshotSeries series_;
 };
+
+/// Replaces FOLDER/NAME.h5 by one with a single group "average", with attributes step and time [s], that `write` fills
+/// with fields laid out as those of gas.h5, and the XDMF file beside it. Whoever reads finds the old or the new one. Throws
+/// RunError.
+void replace_gas_snapshot(const std::filesystem::path& folder, const std::string& name,
+                          const CartesianGrid& grid, std::int64_t step, Real time,
+                          const std::function<void(core::Hdf5File&, const std::string& group)>& write);
 
 }  // namespace pellicle::tools

@@ -129,9 +129,19 @@ class Results:
     def gas(self, time):
         return self._snapshot("gas", time)
 
-    def gas_grid(self):
-        """Face coordinates [m] by axis, or None without gas snapshots."""
-        path = self.folder / "gas.h5"
+    def gas_average(self):
+        """Fields NAME_mean and NAME_rms of gas_average.h5 by name, "from" and "time" [s]; None without it."""
+        path = self.folder / "gas_average.h5"
+        if not path.exists():
+            return None
+        with h5py.File(path, "r") as h5:
+            group = h5["average"]
+            return {name: group[name][...] for name in group} | {
+                "from": float(group.attrs["from"]), "time": float(group.attrs["time"])}
+
+    def gas_grid(self, file="gas.h5"):
+        """Face coordinates [m] by axis, or None without gas snapshots; of the averages with `file` gas_average.h5."""
+        path = self.folder / file
         if not path.exists():
             return None
         with h5py.File(path, "r") as h5:
