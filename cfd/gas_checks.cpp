@@ -4,11 +4,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "cfd/gas_solver_impl.hpp"
 #include "core/error.hpp"
 
 namespace pellicle::cfd {
+
+namespace {
+
+// Both together mean that the gas has gone astray; a flow that steps of any length march to its steady state has the
+// Courant number of its inlets or some times that.
+constexpr Real most_courant = 1000;
+constexpr Real most_over_inlets = 100;
+
+}  // namespace
 
 Real GasSolver::Impl::face_velocity_change() {
   Real change = 0;
@@ -106,7 +116,44 @@ Real GasSolver::Impl::check_and_find_courant(Real dt) {
     }
     courant = std::max(courant, own);
   }
+  if (courant > most_courant && courant > most_over_inlets * fastest_inlet(dt)) fail_for_courant(courant, dt);
   return courant;
+}
+
+// Courant number of the fastest inlet; infinite without inlets, where nothing says how fast the gas may be.
+Real GasSolver::Impl::fastest_inlet(Real dt) const {
+  Real fastest = 0;
+  for (const BoundaryPiece& piece : boundaries.pieces) {
+    if (piece.kind != PieceKind::inlet) continue;
+    const Index3 at = geometry.grid.coordinates(piece.cell);
+    const Real width =
+        std::min({geometry.grid.width(0, at.x), geometry.grid.width(1, at.y), geometry.grid.width(2, at.z)});
+    fastest = std::max(fastest, std::abs(piece.inward_speed()) * dt / width);
+  }
+  return fastest > 0 ? fastest : std::numeric_limits<Real>::infinity();
+}
+
+void GasSolver::Impl::fail_for_courant(Real courant, Real dt) const {
+  const auto number = [&](Index c) {
+    const Index3 at = geometry.grid.coordinates(c);
+    Real sum_of_parts = 0;
+    for (int a = 0; a < 3; ++a) {
+      sum_of_parts += dt * std::abs(fields.velocity(c + a * fields.cells)) / geometry.grid.width(a, at[a]);
+    }
+    return sum_of_parts;
+  };
+  Index worst = 0;
+  for (Index c = 1; c < fields.cells; ++c) {
+    if (number(c) > number(worst)) worst = c;
+  }
+  fail(fmt::format(
+           "the outer iterations do not converge: at a Courant number of {:.3g} a velocity of {:.3g} m/s is "
+           "no solution; a smaller gas step (time.gas_step, time.courant) or a larger "
+           "solver.max_outer_iterations would help",
+           courant,
+           norm(Vec3{fields.velocity(worst), fields.velocity(worst + fields.cells),
+                     fields.velocity(worst + 2 * fields.cells)})),
+       worst);
 }
 
 }  // namespace pellicle::cfd

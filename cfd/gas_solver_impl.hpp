@@ -42,6 +42,8 @@ struct GasSolver::Impl {
   void update_stocks();
   void copy_velocity_to_state();
   Real check_and_find_courant(Real dt);
+  Real fastest_inlet(Real dt) const;
+  [[noreturn]] void fail_for_courant(Real courant, Real dt) const;
   Real find_divergence(Real dt);
   Index most_changed_cell() const;
   [[noreturn]] void fail(const std::string& what, Index cell) const;

@@ -15,14 +15,14 @@ namespace pellicle::cfd {
 struct ScalarScratch {
   explicit ScalarScratch(const Stencil& stencil);
 
-  FaceField carrier;                     ///< flux of the capacity [J/K/s], [kg/s]
-  FaceField conductance;                 ///< eps k area / distance of faces with two cells, half cells in series
-  FaceField correction;                  ///< flux of the scheme less that of upwind
-  std::array<HostArray<Real>, 6> near;   ///< coefficients x-, x+, y-, y+, z-, z+
-  HostArray<Real> own, base, rhs;        ///< of the equation own v = sum of near v_N + base
-  HostArray<Real> storage;               ///< what changes with the cell's own value
-  HostArray<Real> content_old;           ///< capacity of a cell at the beginning of the step [J/K], [kg]
-  HostArray<Real> gain;                  ///< of it, by the source of mass, per second
+  FaceField carrier;      ///< flux of the capacity [J/K/s], [kg/s]
+  FaceField conductance;  ///< eps k area / distance of faces with two cells, half cells in series
+  FaceField correction;   ///< flux of the scheme less that of upwind
+  std::array<HostArray<Real>, 6> near;  ///< coefficients x-, x+, y-, y+, z-, z+
+  HostArray<Real> own, base, rhs;       ///< of the equation own v = sum of near v_N + base
+  HostArray<Real> storage;              ///< what changes with the cell's own value
+  HostArray<Real> content_old;          ///< capacity of a cell at the beginning of the step [J/K], [kg]
+  HostArray<Real> gain;                 ///< of it, by the source of mass, per second
   BiCGStab linear_solver;
 };
 
