@@ -81,8 +81,14 @@ struct AddHits {
       if (record.first_hit < 0 || hit.time < record.first_hit) record.first_hit = hit.time;
       record.last_hit = Kokkos::max(record.last_hit, hit.time);
       if (!warm) continue;
-      const Real drop = targets.gas_temperature(hit.cell);
       const Real brought = hit.film.liquid * c.liquid + hit.film.solids * c.solids;
+      if (targets.own_heat) {
+        const Real above = temperature - c.reference_temperature;
+        temperature += (hit.enthalpy - brought * above) / (capacity + brought);
+        capacity += brought;
+        continue;
+      }
+      const Real drop = targets.gas_temperature(hit.cell);
       temperature += brought / (capacity + brought) * (drop - temperature);
       capacity += brought;
       // Only these: others read who the hit belongs to at the same time.

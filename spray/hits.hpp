@@ -21,8 +21,9 @@ struct alignas(64) Hit {
   Index cell = -1;          ///< of the gas grid, where the droplets were; -1: no gas
   Real time = 0;            ///< [s]
   heat::Film film{};        ///< what the parcel brings [kg]
-  Real enthalpy = 0;        ///< that the droplets bring at the gas's temperature, above that of reference [J]
-  Real free_heat = 0;       ///< what of it nothing gave: from the nozzle's temperature to the gas's [J]
+  Real enthalpy =
+      0;  ///< that the droplets bring, at the gas's temperature or their own, above the reference [J]
+  Real free_heat = 0;  ///< what of it nothing gave: from the nozzle's temperature to the gas's [J]
 
   KOKKOS_INLINE_FUNCTION bool before(const Hit& b) const {
     if (id != b.id) return id < b.id;
@@ -56,10 +57,12 @@ struct HitTargets {
   heat::HeatCapacities capacities;
   DeviceArray<Real> gas_temperature;     ///< of the gas grid's cells [K]
   DeviceArray<Real> nozzle_temperature;  ///< with which droplets leave [K]
+  bool own_heat = false;                 ///< droplets have a temperature: `enthalpy` of each hit is set
 };
 
 /// Adds the first `count` hits, which are sorted, to the particles: film, record, and with heat the temperature that
-/// particle and droplets have together, the droplets having that of the gas; sets `enthalpy` and `free_heat` of each.
+/// particle and droplets have together, the droplets having that of the gas; sets `enthalpy` and `free_heat` of each. With
+/// `own_heat` the droplets have the temperature that their enthalpy says.
 void add_hits(const DeviceArray<Hit>& hits, Index count, const HitTargets& targets);
 
 /// What the droplets of some hits carry [J].

@@ -21,6 +21,7 @@ struct AddParcels {
   Real interval;       ///< between two parcels [s]
   Real latest;         ///< [s]
   Index place;         ///< of the first in the arrays
+  ParcelWater water;   ///< of each, where they evaporate
   Parcels parcels;
 
   KOKKOS_INLINE_FUNCTION void operator()(const Index i) const {
@@ -46,6 +47,7 @@ struct AddParcels {
     made.diameter = sizes.diameter(core::to_uniform(size.word[0], size.word[1]));
     made.droplets = 1;
     made.droplets = nozzle.parcel_mass / (nozzle.density * volume_of(made));
+    if (parcels.evaporate) parcels.water(place + i) = water;
     const Real born = first_born + static_cast<Real>(i) * interval;
     parcels.state(place + i) = made;
     parcels.name(place + i) = ParcelName{n, number, 0};
@@ -84,14 +86,33 @@ std::int64_t Injector::due(Real time) const {
   return static_cast<std::int64_t>(std::floor(nozzle_.mass_rate * open / view_.parcel_mass + 0.5));
 }
 
-void Injector::add(Real begin, Real end, Parcels& parcels) {
+void Injector::let_evaporate(Real solids_density, const DropletHeat& heat, const WholeUnits& units) {
+  // Volumes add up: 1/density = s/solids_density + (1 - s)/liquid_density.
+  const Real s = nozzle_.solids_fraction;
+  const Real of_liquid = 1 / nozzle_.density - s / solids_density;
+  if (s < 1 && !(of_liquid > 0)) {
+    throw std::invalid_argument("droplets of this density and solids_fraction would have no room for liquid");
+  }
+  view_.liquid_density = s < 1 ? (1 - s) / of_liquid : nozzle_.density;
+  view_.liquid_units = whole((1 - s) * view_.parcel_mass / units.water);
+  if (s < 1) {
+    if (view_.liquid_units < 1024)
+      throw std::invalid_argument("parcels of one nozzle are too small beside those of another");
+    view_.parcel_mass = units.water * static_cast<Real>(view_.liquid_units) / (1 - s);
+  }
+  view_.warmth = nozzle_.temperature - heat.water.reference;
+  enthalpy_ = heat.capacity((1 - s) * view_.parcel_mass, s * view_.parcel_mass) * view_.warmth;
+}
+
+void Injector::add(Real begin, Real end, Parcels& parcels, const WholeUnits& units) {
   const std::int64_t count = due(end) - next_;
   if (count <= 0) return;
   const Real interval = view_.parcel_mass / nozzle_.mass_rate;
   const Real first_born = nozzle_.from + (static_cast<Real>(next_) + 0.5) * interval - begin;
-  Kokkos::parallel_for("spray::injector::add", DeviceRange(0, static_cast<Index>(count)),
-                       AddParcels{view_, sizes_, number_, seed_, next_, first_born, interval, end - begin,
-                                  parcels.count, parcels});
+  Kokkos::parallel_for(
+      "spray::injector::add", DeviceRange(0, static_cast<Index>(count)),
+      AddParcels{view_, sizes_, number_, seed_, next_, first_born, interval, end - begin, parcels.count,
+                 ParcelWater{0, parcels.evaporate ? enthalpy(units) : 0}, parcels});
   parcels.count += static_cast<Index>(count);
   next_ += count;
 }

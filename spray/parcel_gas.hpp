@@ -6,7 +6,9 @@
 #include "cfd/gas_property_laws.hpp"
 #include "coupling/cut_grid.hpp"
 #include "coupling/grid_locator.hpp"
+#include "spray/droplet_evaporation_laws.hpp"
 #include "spray/parcel_motion_laws.hpp"
+#include "spray/whole_units.hpp"
 
 namespace pellicle::spray {
 
@@ -19,51 +21,43 @@ struct alignas(64) CellGains {
   std::int64_t dragged = 0;      ///< mass of the droplets times the share of their slip that they lost
 };
 
-/// What one of the units is worth. Powers of two times the mass of the largest parcel: a droplet's velocity is kept to 6e-11
-/// m/s, and 5e6 parcels at 100 m/s fit into a cell, for 0.05 ms.
-struct GainUnits {
-  Real impulse = 0;    ///< [N s]
-  Real mass_time = 0;  ///< [kg s]
-  Real mass = 0;       ///< [kg]
+/// The same of what droplets evaporate.
+struct alignas(64) VapourGains {
+  std::int64_t vapour = 0;        ///< less what condensed
+  std::int64_t heat = 0;          ///< that the gas got, with the enthalpy c_p (T - T_ref) of that vapour
+  std::int64_t momentum[3] = {};  ///< of that vapour
+  std::int64_t reach = 0;         ///< see DropletExchange
 };
-inline GainUnits make_units(Real largest_parcel_mass) {
-  return {largest_parcel_mass * 0x1p-34, largest_parcel_mass * 0x1p-55, largest_parcel_mass * 0x1p-34};
-}
 
 /// Adds to the gains of cells. Empty if droplets do not push the gas.
 struct GasGains {
   DeviceArray<CellGains> cell;
-  GainUnits unit;
+  WholeUnits unit;
 
   KOKKOS_INLINE_FUNCTION bool is_on() const { return cell.extent(0) > 0; }
   /// The gas of a cell takes the opposite of an impulse [N s] on droplets; returns that impulse in whole units.
   KOKKOS_INLINE_FUNCTION Vec3 take_impulse(Index c, const Vec3& impulse) const {
-    Vec3 whole;
+    Vec3 taken;
     for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t units = whole_units(impulse[axis] / unit.impulse);
+      const std::int64_t units = whole(impulse[axis] / unit.impulse);
       Kokkos::atomic_add(&cell(c).impulse[axis], -units);
-      whole[axis] = unit.impulse * static_cast<Real>(units);
+      taken[axis] = unit.impulse * static_cast<Real>(units);
     }
-    return whole;
+    return taken;
   }
   /// Books an impulse [N s] that droplets get as they bounce; returns it in whole units.
   KOKKOS_INLINE_FUNCTION Vec3 book_bounce(Index c, const Vec3& impulse) const {
-    Vec3 whole;
+    Vec3 taken;
     for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t units = whole_units(impulse[axis] / unit.impulse);
+      const std::int64_t units = whole(impulse[axis] / unit.impulse);
       Kokkos::atomic_add(&cell(c).bounced[axis], units);
-      whole[axis] = unit.impulse * static_cast<Real>(units);
+      taken[axis] = unit.impulse * static_cast<Real>(units);
     }
-    return whole;
+    return taken;
   }
   KOKKOS_INLINE_FUNCTION void book_flight(Index c, Real mass, Real time, Real lost_share) const {
-    Kokkos::atomic_add(&cell(c).mass_time, whole_units(mass * time / unit.mass_time));
-    Kokkos::atomic_add(&cell(c).dragged, whole_units(mass * lost_share / unit.mass));
-  }
-
- private:
-  KOKKOS_INLINE_FUNCTION static std::int64_t whole_units(Real x) {
-    return static_cast<std::int64_t>(Kokkos::round(x));
+    Kokkos::atomic_add(&cell(c).mass_time, whole(mass * time / unit.mass_time));
+    Kokkos::atomic_add(&cell(c).dragged, whole(mass * lost_share / unit.mass));
   }
 };
 
@@ -75,8 +69,11 @@ struct ParcelGas {
   DeviceArray<Vec3> velocity;     ///< of its cells [m/s]
   DeviceArray<Real> density;      ///< [kg/m3]; empty: the same everywhere
   DeviceArray<Real> temperature;  ///< [K]; empty unless something follows from it
+  DeviceArray<Real> vapour;       ///< mass fraction; empty unless droplets evaporate
   bool sutherland = false;        ///< viscosity is that of air at the temperature
   GasGains gains;
+  DeviceArray<VapourGains> vapour_gains;  ///< empty unless droplets evaporate
+  DropletHeat heat;
 
   /// Cell whose gas a droplet at this place [m] is in: on its own side of thin walls, and with gas.
   KOKKOS_INLINE_FUNCTION Index cell_of(const Vec3& place) const {

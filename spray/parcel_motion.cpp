@@ -24,6 +24,9 @@ struct Drag {
   Vec3 gas_velocity;  ///< [m/s]
   Real rate;          ///< at which it loses its slip [1/s]
   Index cell;         ///< whose gas it is; -1: no gas
+  DragGas gas;        ///< that of the cell
+  Real slip;          ///< [m/s]
+  Real mass;          ///< of the parcel [kg]
 };
 
 struct Touch {
@@ -44,7 +47,7 @@ struct MoveParcel {
     const Real start = Kokkos::max(before.time, m.begin);
     const Real dt = m.end - start;
 
-    const Drag drag = drag_on(parcel, nozzle);
+    const Drag drag = drag_on(parcel, nozzle, i);
     const DropletStep step = move_droplet(parcel.velocity, drag.gas_velocity, drag.rate, m.gravity, dt);
     const Path path{parcel.position, step.path, 0.5 * parcel.diameter, start - m.begin, dt};
 
@@ -64,17 +67,19 @@ struct MoveParcel {
         after.fate = ParcelFate::captured;
         after.particle = touch.particle;
       } else {
-        book_drag(parcel, nozzle, drag, dt);
+        book_drag(parcel, drag, dt);
         booked = true;
         const Vec3 arriving = parcel.velocity;
         bounce(touch, path, parcel, after);
         if (m.gas.gains.is_on()) {
-          const Real mass = nozzle.density * volume_of(parcel);
           parcel.velocity =
-              arriving + (1 / mass) * m.gas.gains.book_bounce(drag.cell, mass * (parcel.velocity - arriving));
+              arriving +
+              (1 / drag.mass) * m.gas.gains.book_bounce(drag.cell, drag.mass * (parcel.velocity - arriving));
         }
         if (after.fate == ParcelFate::flying) {
+          evaporate(i, parcel, nozzle, drag, dt, after);
           m.parcels.state(i) = parcel;
+          finish(i, after, m.end);
           return;
         }
       }
@@ -85,30 +90,91 @@ struct MoveParcel {
       share = side;
       after.fate = ParcelFate::overspray;
     }
-    if (!booked) book_drag(parcel, nozzle, drag, share * dt);
+    if (!booked) book_drag(parcel, drag, share * dt);
+    evaporate(i, parcel, nozzle, drag, share * dt, after);
     parcel.position = wrapped(parcel.position + share * path.way);
     m.parcels.state(i) = parcel;
-    if (after.fate == ParcelFate::flying) return;
-    after.time = start + share * dt;
-    m.parcels.end(i) = after;
+    finish(i, after, start + share * dt);
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION Drag drag_on(const ParcelState& parcel, const NozzleView& nozzle) const {
-    if (!(m.gas.drag.viscosity > 0)) return {parcel.velocity, {0, 0, 0}, 0, -1};
-    const Index cell = m.gas.cell_of(parcel.position);
-    const Vec3 gas_velocity = m.gas.velocity(cell);
-    const Real rate = relaxation_rate(m.gas.drag_in(cell), nozzle.density, parcel.diameter,
-                                      Kokkos::sqrt(norm_squared(gas_velocity - parcel.velocity)));
-    return {parcel.velocity, gas_velocity, rate, cell};
+  KOKKOS_INLINE_FUNCTION void finish(Index i, ParcelEnd& after, Real time) const {
+    if (after.fate == ParcelFate::flying) return;
+    after.time = time;
+    m.parcels.end(i) = after;
+  }
+
+  KOKKOS_INLINE_FUNCTION Drag drag_on(const ParcelState& parcel, const NozzleView& nozzle, Index i) const {
+    Drag drag{parcel.velocity, {0, 0, 0}, 0, -1, {}, 0, 0};
+    if (!(m.gas.drag.viscosity > 0)) return drag;
+    drag.cell = m.gas.cell_of(parcel.position);
+    drag.gas = m.gas.drag_in(drag.cell);
+    drag.gas_velocity = m.gas.velocity(drag.cell);
+    drag.slip = Kokkos::sqrt(norm_squared(drag.gas_velocity - parcel.velocity));
+    drag.mass = mass_of(m.parcels, i, nozzle, m.units);
+    drag.rate = relaxation_rate(drag.gas, density_of(parcel, nozzle, i), parcel.diameter, drag.slip);
+    return drag;
+  }
+
+  /// Of the droplets [kg/m3]; what evaporates gets as dense as its solids.
+  KOKKOS_INLINE_FUNCTION Real density_of(const ParcelState& parcel, const NozzleView& nozzle, Index i) const {
+    return m.parcels.evaporate ? mass_of(m.parcels, i, nozzle, m.units) / volume_of(parcel) : nozzle.density;
+  }
+
+  /// What the parcel exchanges with the gas of its cell over `time` [s], in whole units: both sides book the same number.
+  KOKKOS_INLINE_FUNCTION void evaporate(Index i, ParcelState& parcel, const NozzleView& nozzle,
+                                        const Drag& drag, Real time, ParcelEnd& after) const {
+    if (!m.parcels.evaporate || !(time > 0)) return;
+    const WholeUnits& unit = m.units;
+    const DropletHeat& law = m.gas.heat;
+    ParcelWater water = m.parcels.water(i);
+    const std::int64_t all = nozzle.liquid_units;
+    const bool was_dry = water.evaporated >= all;
+    const heat::Film content = content_of(nozzle, water, unit.water);
+    const Real warmth =
+        unit.heat * static_cast<Real>(water.enthalpy) / law.capacity(content.liquid, content.solids);
+    const DropletExchange got =
+        exchange_of(law, {content.liquid, content.solids, warmth, parcel.diameter, parcel.droplets},
+                    {drag.gas.density, drag.gas.viscosity, m.gas.temperature(drag.cell) - law.water.reference,
+                     m.gas.vapour(drag.cell)},
+                    drag.slip, time);
+    const std::int64_t left = all - water.evaporated;
+    std::int64_t evaporated = Kokkos::min(whole(got.evaporated / unit.water), left);
+    // Of droplets without solids the last goes at once: of less than this the units of heat would make no temperature.
+    const bool vanishes =
+        !(content.solids > 0) && left - evaporated < Kokkos::min(std::int64_t{1} << 16, all / 1024);
+    if (vanishes) evaporated = left;
+    const Real mass = unit.water * static_cast<Real>(evaporated);
+    const std::int64_t latent = whole(law.water.latent * mass / unit.heat);
+    // What vanishes leaves all its heat to the gas.
+    const std::int64_t to_gas =
+        vanishes ? water.enthalpy - latent
+                 : whole((mass * law.water.vapour_capacity * warmth - got.heat) / unit.heat);
+    water.evaporated += evaporated;
+    water.enthalpy -= to_gas + latent;
+    m.parcels.water(i) = water;
+    VapourGains& gains = m.gas.vapour_gains(drag.cell);
+    Kokkos::atomic_add(&gains.vapour, evaporated);
+    Kokkos::atomic_add(&gains.heat, to_gas);
+    Kokkos::atomic_add(&gains.reach, whole(got.reach / unit.mass));
+    for (int axis = 0; axis < 3; ++axis)
+      Kokkos::atomic_add(&gains.momentum[axis], whole(mass * parcel.velocity[axis] / unit.impulse));
+    if (!was_dry && water.evaporated >= all) Kokkos::atomic_inc(&m.dried(m.parcels.name(i).nozzle));
+    if (vanishes) {
+      if (after.fate == ParcelFate::flying) after.fate = ParcelFate::evaporated;
+      return;
+    }
+    // Volumes add up.
+    const Real shrunk = unit.water * static_cast<Real>(water.evaporated) / nozzle.liquid_density;
+    const Real volume = nozzle.parcel_mass / nozzle.density - shrunk;
+    parcel.diameter = Kokkos::cbrt(volume / (3.14159265358979323846 / 6 * parcel.droplets));
   }
 
   /// Where droplets push the gas: gives it the opposite of the drag's impulse over `time` [s], in whole units, and the
   /// droplet the velocity that it has by the same number.
-  KOKKOS_INLINE_FUNCTION void book_drag(ParcelState& parcel, const NozzleView& nozzle, const Drag& drag,
-                                        Real time) const {
+  KOKKOS_INLINE_FUNCTION void book_drag(ParcelState& parcel, const Drag& drag, Real time) const {
     if (!m.gas.gains.is_on()) return;
-    const Real mass = nozzle.density * volume_of(parcel);
+    const Real mass = drag.mass;
     const Vec3 fallen = time * m.gravity;
     const DropletStep step = move_droplet(drag.velocity, drag.gas_velocity, drag.rate, m.gravity, time);
     const Vec3 impulse = m.gas.gains.take_impulse(drag.cell, mass * (step.velocity - drag.velocity - fallen));
@@ -210,8 +276,8 @@ struct MoveParcel {
     const Real distance = Kokkos::sqrt(norm_squared(apart));
     const Real normal_speed =
         distance > 0 ? -dot(parcel.velocity - velocity_of(touch.particle), apart) / distance : Real(0);
-    const Real weber =
-        weber_number(nozzle.density, normal_speed, parcel.diameter, nozzle.efficiency.surface_tension);
+    const Real weber = weber_number(density_of(parcel, nozzle, i), normal_speed, parcel.diameter,
+                                    nozzle.efficiency.surface_tension);
     const ParcelName name = m.parcels.name(i);
     const Real draw = core::random_uniform(m.seed, core::Purpose::capture, name.number, name.nozzle,
                                            static_cast<std::uint32_t>(m.substep % (std::int64_t{1} << 16)));

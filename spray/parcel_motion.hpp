@@ -26,6 +26,8 @@ struct ParcelTargets {
 struct ParcelMove {
   Parcels parcels;
   DeviceArray<NozzleView> nozzle;
+  DeviceArray<std::int64_t> dried;  ///< parcels that ran dry, by nozzle; empty unless they evaporate
+  WholeUnits units;
   ParcelGas gas;
   ParcelTargets targets;
   MovingWalls walls;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace pellicle::spray {
 namespace {
@@ -36,7 +37,8 @@ void read(const core::CheckpointReader& file, const char* name, Index count, con
 }  // namespace
 
 std::size_t Parcels::bytes() const {
-  return capacity() * (sizeof(ParcelState) + sizeof(ParcelName) + sizeof(ParcelEnd));
+  return capacity() * (sizeof(ParcelState) + sizeof(ParcelName) + sizeof(ParcelEnd)) +
+         water.extent(0) * sizeof(ParcelWater);
 }
 
 void reserve(Parcels& parcels, Index size) {
@@ -45,6 +47,7 @@ void reserve(Parcels& parcels, Index size) {
   grow(parcels.state, parcels.count, wanted, "spray::parcels::state");
   grow(parcels.name, parcels.count, wanted, "spray::parcels::name");
   grow(parcels.end, parcels.count, wanted, "spray::parcels::end");
+  if (parcels.evaporate) grow(parcels.water, parcels.count, wanted, "spray::parcels::water");
 }
 
 void save(const Parcels& parcels, core::CheckpointWriter& file) {
@@ -52,6 +55,14 @@ void save(const Parcels& parcels, core::CheckpointWriter& file) {
   if (parcels.count == 0) return;
   file.write("spray/state", host_copy(parcels.state, parcels.count));
   file.write("spray/name", host_copy(parcels.name, parcels.count));
+  if (parcels.evaporate) {
+    // As two columns: a checkpoint holds numbers.
+    const auto water = host_copy(parcels.water, parcels.count);
+    std::vector<std::int64_t> numbers;
+    for (std::size_t i = 0; i < water.extent(0); ++i)
+      numbers.insert(numbers.end(), {water(i).evaporated, water(i).enthalpy});
+    file.write("spray/water", numbers);
+  }
 }
 
 void load(Parcels& parcels, const core::CheckpointReader& file) {
@@ -63,6 +74,14 @@ void load(Parcels& parcels, const core::CheckpointReader& file) {
   parcels.count = count;
   read(file, "spray/state", count, parcels.state);
   read(file, "spray/name", count, parcels.name);
+  if (parcels.evaporate) {
+    std::vector<std::int64_t> numbers(2 * static_cast<std::size_t>(count));
+    file.read_into("spray/water", numbers);
+    const auto part = Kokkos::subview(parcels.water, std::pair<Index, Index>(0, count));
+    const auto water = Kokkos::create_mirror_view(part);
+    for (std::size_t i = 0; i < water.extent(0); ++i) water(i) = {numbers[2 * i], numbers[2 * i + 1]};
+    Kokkos::deep_copy(part, water);
+  }
   // Between two outer steps all parcels fly, since its beginning.
   Kokkos::deep_copy(Kokkos::subview(parcels.end, std::pair<Index, Index>(0, count)), ParcelEnd{});
 }

@@ -26,14 +26,20 @@ struct ParcelName {
 };
 
 /// What has become of a parcel in the present outer step.
-enum class ParcelFate : std::int32_t { flying, captured, wall_loss, overspray };
-inline constexpr int fate_count = 4;
+enum class ParcelFate : std::int32_t { flying, captured, wall_loss, overspray, evaporated };
+inline constexpr int fate_count = 5;
 
 struct ParcelEnd {
   ParcelFate fate = ParcelFate::flying;
   std::int32_t particle = -1;  ///< that captured it: its place in the arrays of particles
   Real time =
       0;  ///< when, since the beginning of the outer step; of a new parcel that flies: when it is born [s]
+};
+
+/// What a parcel has exchanged with the gas, in whole units; where droplets evaporate.
+struct ParcelWater {
+  std::int64_t evaporated = 0;  ///< less what condensed
+  std::int64_t enthalpy = 0;    ///< it has now, above that at the reference temperature
 };
 
 /// Arrays are at least `count` long; entry i of each belongs to the same parcel. Their order is that of birth, nozzle by
@@ -43,6 +49,8 @@ struct Parcels {
   DeviceArray<ParcelState> state;
   DeviceArray<ParcelName> name;
   DeviceArray<ParcelEnd> end;
+  bool evaporate = false;
+  DeviceArray<ParcelWater> water;  ///< empty unless they evaporate
 
   std::size_t capacity() const { return state.extent(0); }
   std::size_t bytes() const;

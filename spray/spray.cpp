@@ -39,7 +39,9 @@ struct PartParcels {
   Parcels from, to;
   DeviceArray<Hit> hits;
   DeviceArray<std::int64_t> ended;
+  DeviceArray<EndedWater> ended_water;
   DeviceArray<NozzleView> nozzle;
+  WholeUnits units;
   DeviceArray<dem::VelocitySpin> velocity_spin;
   ParcelGas gas;
   Real time;  ///< at which the outer step began [s]
@@ -53,9 +55,12 @@ struct PartParcels {
         to.state(place) = from.state(i);
         to.name(place) = name;
         to.end(place) = ParcelEnd{};
+        if (from.evaporate) to.water(place) = from.water(i);
       } else {
         // Whole numbers: the order of adding does not matter.
-        Kokkos::atomic_inc(&ended(name.nozzle * fate_count + static_cast<int>(end.fate)));
+        const Index row = name.nozzle * fate_count + static_cast<int>(end.fate);
+        Kokkos::atomic_inc(&ended(row));
+        if (from.evaporate) add_water(row, from.water(i), nozzle(name.nozzle));
       }
       if (end.fate == ParcelFate::captured)
         hits(static_cast<Index>(rank / captured_unit)) = make_hit(i, end, name);
@@ -64,10 +69,15 @@ struct PartParcels {
     if (end.fate == ParcelFate::captured) rank += captured_unit;
   }
 
+  KOKKOS_INLINE_FUNCTION void add_water(Index row, const ParcelWater& water, const NozzleView& n) const {
+    EndedWater& sum = ended_water(row);
+    Kokkos::atomic_add(&sum.evaporated, water.evaporated);
+    Kokkos::atomic_add(&sum.enthalpy, water.enthalpy);
+    if (water.evaporated >= n.liquid_units) Kokkos::atomic_inc(&sum.dust);
+  }
+
   KOKKOS_INLINE_FUNCTION Hit make_hit(Index i, const ParcelEnd& end, const ParcelName& name) const {
     const ParcelState parcel = from.state(i);
-    const NozzleView& n = nozzle(name.nozzle);
-    const Real mass = n.density * volume_of(parcel);
     Hit hit;
     hit.id = velocity_spin(end.particle).id;
     hit.nozzle = name.nozzle;
@@ -75,8 +85,8 @@ struct PartParcels {
     hit.particle = end.particle;
     hit.cell = gas.velocity.extent(0) > 0 ? gas.cell_of(parcel.position) : -1;
     hit.time = time + end.time;
-    hit.film.solids = n.solids_fraction * mass;
-    hit.film.liquid = mass - hit.film.solids;
+    hit.film = content_of(from, i, nozzle(name.nozzle), units);
+    if (from.evaporate) hit.enthalpy = units.heat * static_cast<Real>(from.water(i).enthalpy);
     return hit;
   }
 };
@@ -90,17 +100,23 @@ struct CountCaptured {
 
 constexpr Index sum_block = 512;
 
-/// Mass [kg] of the parcels of one nozzle in blocks of a fixed size.
-struct SumMass {
+/// What the parcels of one nozzle are and have, in blocks of a fixed size.
+struct SumFlying {
   Parcels parcels;
   DeviceArray<NozzleView> nozzle;
+  WholeUnits units;
   std::int32_t which;
-  DeviceArray<Real> partial;
+  DeviceArray<FlyingWater> partial;
   KOKKOS_INLINE_FUNCTION void operator()(const Index block) const {
     const Index end = Kokkos::min((block + 1) * sum_block, parcels.count);
-    Real sum = 0;
+    FlyingWater sum;
     for (Index i = block * sum_block; i < end; ++i) {
-      if (parcels.name(i).nozzle == which) sum += nozzle(which).density * volume_of(parcels.state(i));
+      if (parcels.name(i).nozzle != which) continue;
+      sum.mass += mass_of(parcels, i, nozzle(which), units);
+      if (!parcels.evaporate) continue;
+      sum.solids += content_of(parcels, i, nozzle(which), units).solids;
+      sum.evaporated += units.water * static_cast<Real>(parcels.water(i).evaporated);
+      sum.enthalpy += units.heat * static_cast<Real>(parcels.water(i).enthalpy);
     }
     partial(block) = sum;
   }
@@ -110,6 +126,7 @@ struct SumMass {
 struct SumMomentum {
   Parcels parcels;
   DeviceArray<NozzleView> nozzle;
+  WholeUnits units;
   Index first;
   DeviceArray<Vec3> partial;
   KOKKOS_INLINE_FUNCTION void operator()(const Index block) const {
@@ -117,9 +134,8 @@ struct SumMomentum {
     const Index end = Kokkos::min(begin + sum_block, parcels.count);
     Vec3 sum[fate_count];
     for (Index i = begin; i < end; ++i) {
-      const ParcelState parcel = parcels.state(i);
       sum[static_cast<int>(parcels.end(i).fate)] +=
-          nozzle(parcels.name(i).nozzle).density * volume_of(parcel) * parcel.velocity;
+          mass_of(parcels, i, nozzle(parcels.name(i).nozzle), units) * parcels.state(i).velocity;
     }
     for (int fate = 0; fate < fate_count; ++fate) partial(block * fate_count + fate) = sum[fate];
   }
@@ -134,10 +150,25 @@ Spray::Spray(const SprayOptions& options, const std::vector<dem::Wall>& walls)
       pose_at_end_("spray::spray::pose_at_end", walls.size()) {
   std::vector<NozzleView> views;
   std::vector<Real> temperatures;
+  Real largest = 0;
   for (const Nozzle& nozzle : options_.nozzles) {
     injectors_.emplace_back(nozzle, static_cast<std::int32_t>(injectors_.size()), options_.seed);
-    views.push_back(injectors_.back().view());
+    largest = std::max(largest, injectors_.back().parcel_mass());
     temperatures.push_back(nozzle.temperature);
+  }
+  units_ = make_units(largest);
+  for (Injector& injector : injectors_) {
+    if (options_.heat.on) injector.let_evaporate(options_.solids_density, options_.heat, units_);
+    views.push_back(injector.view());
+  }
+  if (options_.heat.on) {
+    const std::size_t rows = injectors_.size() * fate_count;
+    parcels_.evaporate = aside_.evaporate = true;
+    ended_water_ = DeviceArray<EndedWater>("spray::spray::ended_water", rows);
+    dried_ = DeviceArray<std::int64_t>("spray::spray::dried", injectors_.size());
+    evaporated_.resize(rows);
+    ended_enthalpy_.resize(rows);
+    dust_.resize(rows);
   }
   nozzle_ = to_device("spray::spray::nozzle", views);
   nozzle_temperature_ = to_device("spray::spray::nozzle_temperature", temperatures);
@@ -168,7 +199,7 @@ void Spray::inject(Real time, int substeps, const dem::Engine& engine) {
     wanted += std::max<std::int64_t>(0, injector.due(end) - injector.injected());
   reserve(parcels_, static_cast<Index>(wanted));
   const Index before = parcels_.count;
-  for (Injector& injector : injectors_) injector.add(time, end, parcels_);
+  for (Injector& injector : injectors_) injector.add(time, end, parcels_, units_);
   if (parcels_.count == 0) return;
   if (options_.watch_momentum) {
     const Vec3 born = sum_momentum(before)[static_cast<std::size_t>(ParcelFate::flying)];
@@ -198,6 +229,8 @@ bool Spray::move(int k, const dem::Engine& engine, const ParcelGas& gas) {
   ParcelMove move;
   move.parcels = parcels_;
   move.nozzle = nozzle_;
+  move.dried = dried_;
+  move.units = units_;
   move.gas = gas;
   if (const dem::NeighbourSearch* search = engine.search(); search != nullptr) {
     move.targets = {engine.particles(), search->grid(), search->cell_start(), search->order(),
@@ -224,7 +257,7 @@ std::array<Vec3, fate_count> Spray::sum_momentum(Index first) const {
         Kokkos::view_alloc(Kokkos::WithoutInitializing, "spray::spray::momentum"), 2 * size);
   }
   Kokkos::parallel_for("spray::spray::sum_momentum", DeviceRange(0, blocks),
-                       SumMomentum{parcels_, nozzle_, first, momentum_scratch_});
+                       SumMomentum{parcels_, nozzle_, units_, first, momentum_scratch_});
   const auto host = Kokkos::create_mirror_view_and_copy(
       Kokkos::HostSpace{}, Kokkos::subview(momentum_scratch_, std::pair<std::size_t, std::size_t>(0, size)));
   for (std::size_t i = 0; i < size; ++i) sum[i % fate_count] += host(i);
@@ -238,12 +271,6 @@ ParcelMomentum Spray::momentum() const {
   };
   return {vector(0), vector(3), vector(6), vector(9),
           sum_momentum(0)[static_cast<std::size_t>(ParcelFate::flying)]};
-}
-
-Real Spray::largest_parcel_mass() const {
-  Real largest = 0;
-  for (const Injector& injector : injectors_) largest = std::max(largest, injector.parcel_mass());
-  return largest;
 }
 
 void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& surface, const ParcelGas& gas,
@@ -262,17 +289,25 @@ void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& s
   hits_.reserve(captured);
   reserve(aside_, parcels_.count);
   std::int64_t ranks = 0;
-  Kokkos::parallel_scan(
-      "spray::spray::part_parcels", DeviceRange(0, parcels_.count),
-      PartParcels{parcels_, aside_, hits_.hits(), ended_, nozzle_, particles.velocity_spin, gas, time_},
-      ranks);
+  Kokkos::parallel_scan("spray::spray::part_parcels", DeviceRange(0, parcels_.count),
+                        PartParcels{parcels_, aside_, hits_.hits(), ended_, ended_water_, nozzle_, units_,
+                                    particles.velocity_spin, gas, time_},
+                        ranks);
   std::swap(parcels_, aside_);
   parcels_.count = static_cast<Index>(ranks & (captured_unit - 1));
   aside_.count = 0;
+  if (options_.heat.on) count_ended_water();
   if (captured == 0) return;
   hits_.sort(captured);
-  HitTargets targets{surface.bare(particles), surface.film(),       records_.values(), {},
-                     surface.heat_capacity(), surface.capacities(), gas_temperature,   nozzle_temperature_};
+  HitTargets targets{surface.bare(particles),
+                     surface.film(),
+                     records_.values(),
+                     {},
+                     surface.heat_capacity(),
+                     surface.capacities(),
+                     gas_temperature,
+                     nozzle_temperature_,
+                     options_.heat.on};
   const bool warm = gas_temperature.extent(0) > 0;
   if (warm) targets.temperature = surface.temperature();
   add_hits(hits_.hits(), captured, targets);
@@ -282,18 +317,52 @@ void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& s
   free_heat_.add(heat.free_heat);
 }
 
+void Spray::count_ended_water() {
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, ended_water_);
+  for (std::size_t row = 0; row < host.extent(0); ++row) {
+    evaporated_[row].add(units_.water * static_cast<Real>(host(row).evaporated));
+    ended_enthalpy_[row].add(units_.heat * static_cast<Real>(host(row).enthalpy));
+    dust_[row] += host(row).dust;
+  }
+  Kokkos::deep_copy(ended_water_, EndedWater{});
+}
+
+std::vector<FlyingWater> Spray::sum_flying() const {
+  std::vector<FlyingWater> all(injectors_.size());
+  const Index blocks = (parcels_.count + sum_block - 1) / sum_block;
+  if (blocks == 0) return all;
+  const DeviceArray<FlyingWater> partial(
+      Kokkos::view_alloc(Kokkos::WithoutInitializing, "spray::spray::flying"),
+      static_cast<std::size_t>(blocks));
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    Kokkos::parallel_for("spray::spray::sum_flying", DeviceRange(0, blocks),
+                         SumFlying{parcels_, nozzle_, units_, static_cast<std::int32_t>(n), partial});
+    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, partial);
+    for (Index b = 0; b < blocks; ++b) {
+      all[n].mass += host(b).mass;
+      all[n].solids += host(b).solids;
+      all[n].evaporated += host(b).evaporated;
+      all[n].enthalpy += host(b).enthalpy;
+    }
+  }
+  return all;
+}
+
 std::vector<NozzleFigures> Spray::figures() const {
   const auto ended = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, ended_);
-  const Index blocks = (parcels_.count + sum_block - 1) / sum_block;
-  const DeviceArray<Real> partial(Kokkos::view_alloc(Kokkos::WithoutInitializing, "spray::spray::mass"),
-                                  static_cast<std::size_t>(blocks));
+  const auto dried = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, dried_);
+  const std::vector<FlyingWater> flying = sum_flying();
   std::vector<NozzleFigures> all;
   for (std::size_t n = 0; n < injectors_.size(); ++n) {
     const Injector& injector = injectors_[n];
-    const auto mass = [&](ParcelFate fate) {
-      return static_cast<Real>(ended(n * fate_count + static_cast<std::size_t>(fate))) *
-             injector.parcel_mass();
+    const auto row_of = [&](ParcelFate fate) { return n * fate_count + static_cast<std::size_t>(fate); };
+    const auto parcels = [&](ParcelFate fate) {
+      return static_cast<Real>(ended(row_of(fate))) * injector.parcel_mass();
     };
+    const auto lost = [&](ParcelFate fate) {
+      return evaporated_.empty() ? Real(0) : evaporated_[row_of(fate)].value();
+    };
+    const auto mass = [&](ParcelFate fate) { return parcels(fate) - lost(fate); };
     NozzleFigures f;
     f.name = injector.nozzle().name;
     f.parcels = injector.injected();
@@ -301,16 +370,39 @@ std::vector<NozzleFigures> Spray::figures() const {
     f.captured = mass(ParcelFate::captured);
     f.wall_loss = mass(ParcelFate::wall_loss);
     f.overspray = mass(ParcelFate::overspray);
+    f.in_flight = flying[n].mass;
+    f.evaporated = flying[n].evaporated + lost(ParcelFate::captured) + lost(ParcelFate::wall_loss) +
+                   lost(ParcelFate::overspray) + lost(ParcelFate::evaporated);
     f.solids_fraction = injector.nozzle().solids_fraction;
-    if (blocks > 0) {
-      Kokkos::parallel_for("spray::spray::sum_mass", DeviceRange(0, blocks),
-                           SumMass{parcels_, nozzle_, static_cast<std::int32_t>(n), partial});
-      const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, partial);
-      for (Index b = 0; b < blocks; ++b) f.in_flight += host(b);
+    f.captured_solids = f.solids_fraction * parcels(ParcelFate::captured);
+    f.wall_solids = f.solids_fraction * parcels(ParcelFate::wall_loss);
+    f.overspray_solids = f.solids_fraction * parcels(ParcelFate::overspray);
+    f.in_flight_solids = options_.heat.on ? flying[n].solids : f.solids_fraction * f.in_flight;
+    if (options_.heat.on) {
+      const Real solids = f.solids_fraction * injector.parcel_mass();
+      f.dried = static_cast<Real>(dried(n)) * solids;
+      f.dust_captured = static_cast<Real>(dust_[row_of(ParcelFate::captured)]) * solids;
     }
     all.push_back(f);
   }
   return all;
+}
+
+SprayHeat Spray::heat() const {
+  SprayHeat heat{enthalpy_.value(), free_heat_.value()};
+  if (!options_.heat.on) return heat;
+  const std::vector<FlyingWater> flying = sum_flying();
+  for (std::size_t n = 0; n < injectors_.size(); ++n) {
+    const auto ended = [&](ParcelFate fate) {
+      return ended_enthalpy_[n * fate_count + static_cast<std::size_t>(fate)].value();
+    };
+    heat.injected += static_cast<Real>(injectors_[n].injected()) * units_.heat *
+                     static_cast<Real>(injectors_[n].enthalpy(units_));
+    heat.wall_loss += ended(ParcelFate::wall_loss);
+    heat.overspray += ended(ParcelFate::overspray);
+    heat.in_flight += flying[n].enthalpy;
+  }
+  return heat;
 }
 
 std::size_t Spray::bytes() const {
@@ -323,6 +415,15 @@ void Spray::save(core::CheckpointWriter& file) const {
   for (const Injector& injector : injectors_) injected.push_back(injector.injected());
   file.write("spray/injected", injected);
   file.write("spray/ended", Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, ended_));
+  if (options_.heat.on) {
+    std::vector<double> sums;
+    for (const auto* list : {&evaporated_, &ended_enthalpy_}) {
+      for (const core::ExactSum& sum : *list) sums.insert(sums.end(), {sum.parts()[0], sum.parts()[1]});
+    }
+    file.write("spray/ended_water", sums);
+    file.write("spray/dust", dust_);
+    file.write("spray/dried", Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, dried_));
+  }
   const auto enthalpy = enthalpy_.parts();
   const auto free_heat = free_heat_.parts();
   std::vector<double> momentum;
@@ -340,6 +441,21 @@ void Spray::load(const core::CheckpointReader& file) {
   const auto ended = Kokkos::create_mirror_view(ended_);
   file.read_into("spray/ended", ended);
   Kokkos::deep_copy(ended_, ended);
+  if (options_.heat.on) {
+    std::vector<double> sums(4 * evaporated_.size());
+    file.read_into("spray/ended_water", sums);
+    std::size_t at = 0;
+    for (auto* list : {&evaporated_, &ended_enthalpy_}) {
+      for (core::ExactSum& sum : *list) {
+        sum.set_parts(sums[at], sums[at + 1]);
+        at += 2;
+      }
+    }
+    file.read_into("spray/dust", dust_);
+    const auto dried = Kokkos::create_mirror_view(dried_);
+    file.read_into("spray/dried", dried);
+    Kokkos::deep_copy(dried_, dried);
+  }
   std::vector<double> momentum(2 * momentum_.size());
   file.read_into("spray/momentum", momentum);
   for (std::size_t i = 0; i < momentum_.size(); ++i)

@@ -26,27 +26,48 @@ struct SprayOptions {
       0;  ///< how often parcels move [s]; 0: as seldom as their path stays below a particle's radius
   std::uint64_t seed = 1;
   bool watch_momentum = false;  ///< what parcels bring along and take away is added up
+  DropletHeat heat{};           ///< whether droplets evaporate in flight, and by what
+  Real solids_density = 0;      ///< of what they leave behind [kg/m3]; of use with `heat` on
 };
 
-/// What has become of the droplets of a nozzle, in kg of liquid and solids together; injected is the sum of the others.
+/// What has become of the droplets of a nozzle, in kg of liquid and solids together; injected is the sum of the others up to
+/// evaporated.
 struct NozzleFigures {
   std::string name;
   Real injected = 0, captured = 0, wall_loss = 0, overspray = 0;
-  Real in_flight = 0;  ///< summed over the parcels there are
+  Real in_flight = 0;   ///< summed over the parcels there are
+  Real evaporated = 0;  ///< in flight, less what condensed
+  Real captured_solids = 0, wall_solids = 0, overspray_solids = 0, in_flight_solids = 0;
+  Real dried = 0;          ///< solids of droplets that ran dry in flight: dust
+  Real dust_captured = 0;  ///< of this, what particles captured nevertheless
   Real solids_fraction = 0;
   std::int64_t parcels = 0;  ///< injected
 };
 
-/// Heat that captured droplets brought since the start [J].
+/// Heat that droplets brought since the start [J].
 struct SprayHeat {
-  Real enthalpy = 0;   ///< above the reference temperature
+  Real enthalpy = 0;   ///< of captured ones, above the reference temperature
   Real free_heat = 0;  ///< of this, what nothing gave: droplets take the gas's temperature for nothing
+  // Where droplets have a temperature of their own: with which they came, went, and are.
+  Real injected = 0, wall_loss = 0, overspray = 0, in_flight = 0;
 };
 
 /// Momentum of parcels [kg m/s], since the start but for the last.
 struct ParcelMomentum {
   Vec3 injected, captured, wall_loss, overspray;
   Vec3 in_flight;  ///< now
+};
+
+/// Of parcels that ended alike, in whole units.
+struct EndedWater {
+  std::int64_t evaporated = 0, enthalpy = 0;
+  std::int64_t dust = 0;  ///< parcels that were dry
+};
+
+/// Of the parcels of a nozzle in flight.
+struct FlyingWater {
+  Real mass = 0, solids = 0;          ///< [kg]
+  Real evaporated = 0, enthalpy = 0;  ///< [kg], [J]
 };
 
 /// An outer step is inject, move in its substeps (dem::SubstepHook), collect.
@@ -74,13 +95,14 @@ class Spray {
   std::vector<NozzleFigures> figures() const;
   /// Summed over the parcels, in blocks of a fixed size, if `SprayOptions::watch_momentum` is set; else 0.
   ParcelMomentum momentum() const;
-  /// Of the parcels of any nozzle [kg].
-  Real largest_parcel_mass() const;
-  SprayHeat heat() const { return {enthalpy_.value(), free_heat_.value()}; }
+  /// By the mass of the parcels of any nozzle.
+  const WholeUnits& units() const { return units_; }
+  SprayHeat heat() const;
   const Parcels& parcels() const { return parcels_; }
-  const Nozzle& nozzle(std::int32_t number) const {
-    return injectors_[static_cast<std::size_t>(number)].nozzle();
+  const NozzleView& nozzle(std::int32_t number) const {
+    return injectors_[static_cast<std::size_t>(number)].view();
   }
+  const DropletHeat& droplet_heat() const { return options_.heat; }
   /// Substeps between two moves, in the present outer step.
   int stride() const { return stride_; }
   std::size_t bytes() const;
@@ -93,7 +115,12 @@ class Spray {
   std::array<Vec3, fate_count> sum_momentum(Index first) const;
   MovingWalls walls_during(const dem::Engine& engine, int substeps) const;
 
+  void count_ended_water();
+  /// Sums over the parcels in flight, by nozzle.
+  std::vector<FlyingWater> sum_flying() const;
+
   SprayOptions options_;
+  WholeUnits units_;
   std::vector<Injector> injectors_;
   DeviceArray<NozzleView> nozzle_;
   DeviceArray<Real> nozzle_temperature_;
@@ -113,7 +140,12 @@ class Spray {
 
   core::ExactSum enthalpy_, free_heat_;
   mutable DeviceArray<Vec3> momentum_scratch_;
-  std::array<core::ExactSum, 12> momentum_;  // injected, captured, wall_loss, overspray
+  std::array<core::ExactSum, 3 * static_cast<std::size_t>(fate_count)> momentum_;  // injected, then by fate
+  // Where droplets evaporate: of parcels that ended in an outer step, and since the start, by nozzle and fate.
+  DeviceArray<EndedWater> ended_water_;
+  DeviceArray<std::int64_t> dried_;  // parcels, by nozzle, since the start
+  std::vector<core::ExactSum> evaporated_, ended_enthalpy_;
+  std::vector<std::int64_t> dust_;
 };
 
 }  // namespace pellicle::spray

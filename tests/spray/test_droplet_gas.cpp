@@ -47,7 +47,7 @@ struct FreeGas {
     ParcelGas around;
     around.drag = {1.2, 1.8e-5};
     around.grid = coupling::GridLocator(grid);
-    return {options, around, volume, spray.largest_parcel_mass(), gravity};
+    return {options, around, volume, spray.units(), gravity};
   }
   void push(const DropletGas& droplets, Real step) {
     cfd::ParticleExchange exchange = cfd::make_empty_exchange(grid);
@@ -86,7 +86,7 @@ TEST(DropletGas, TotalMomentumIsConstantAndTheGasDoesNotOvershoot) {
     const SprayOptions options = burst({0.6, 0, 0.8}, 10, 1e5, g);
     Rig rig(periodic_box(), {fixed_bead({0.019, 0.001, 0.019}, 1e-5)}, options);
     FreeGas gas({1, 1, 1});
-    DropletGas droplets = gas.droplets({true, false, false}, rig.spray, g);
+    DropletGas droplets = gas.droplets({.two_way = true}, rig.spray, g);
     rig.droplets = &droplets;
     Real mass = 0;
     for (int k = 0; k < 300; ++k) {
@@ -126,7 +126,7 @@ TEST(DropletGas, EachCellGetsWhatDropletsLoseThere) {
   SprayOptions options = burst({1, 0, 0}, 1, 1);
   Rig rig(periodic_box(), {fixed_bead({0.019, 0.001, 0.019}, 1e-5)}, options);
   FreeGas gas({20, 1, 1});
-  DropletGas droplets = gas.droplets({true, false, false}, rig.spray);
+  DropletGas droplets = gas.droplets({.two_way = true}, rig.spray);
   rig.droplets = &droplets;
   for (int k = 0; k < 200; ++k) {
     droplets.sample(gas.state);
@@ -168,7 +168,7 @@ TEST(DropletGas, BouncesAreBooked) {
   dem::EngineSetup setup = periodic_box();
   Rig rig(setup, {fixed_bead({0.012, 0.0102, 0.01}, 2e-3)}, options);
   FreeGas gas({2, 2, 2});
-  DropletGas droplets = gas.droplets({true, false, false}, rig.spray);
+  DropletGas droplets = gas.droplets({.two_way = true}, rig.spray);
   rig.droplets = &droplets;
   for (int k = 0; k < 20; ++k) {
     droplets.sample(gas.state);
@@ -187,7 +187,7 @@ TEST(DropletGas, TotalsGoThroughACheckpoint) {
   SprayOptions options = burst({1, 0, 0}, 20, 10, {0, 0, -9.81});
   Rig rig(periodic_box(), {fixed_bead({0.019, 0.001, 0.019}, 1e-5)}, options);
   FreeGas gas({2, 2, 2});
-  DropletGas droplets = gas.droplets({true, false, false}, rig.spray, {0, 0, -9.81});
+  DropletGas droplets = gas.droplets({.two_way = true}, rig.spray, {0, 0, -9.81});
   rig.droplets = &droplets;
   droplets.sample(gas.state);
   for (int k = 0; k < 3; ++k) rig.outer_step();
@@ -195,7 +195,7 @@ TEST(DropletGas, TotalsGoThroughACheckpoint) {
   droplets.save(out);
   rig.spray.save(out);
   out.close();
-  DropletGas again = gas.droplets({true, false, false}, rig.spray);
+  DropletGas again = gas.droplets({.two_way = true}, rig.spray);
   Spray spray(options, {});
   core::CheckpointReader in(folder / "checkpoint.h5");
   again.load(in);
@@ -220,7 +220,7 @@ TEST(DropletGas, DragIsThatOfTheGasInTheCell) {
   temperature(0) = 500;
   temperature(1) = 300;
   gas.state.density(0) = 0.7;
-  DropletGas droplets = gas.droplets({false, true, true}, rig.spray);
+  DropletGas droplets = gas.droplets({.density_varies = true, .viscosity_follows = true}, rig.spray);
   rig.droplets = &droplets;
   droplets.sample(gas.state);
   rig.outer_step();

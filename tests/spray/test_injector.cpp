@@ -35,7 +35,7 @@ struct Burst {
   Burst(const Nozzle& nozzle, Index count, std::uint64_t seed = 7) {
     Injector injector(nozzle, 0, seed);
     reserve(parcels, count);
-    injector.add(0, (count + 0.25) * injector.parcel_mass() / nozzle.mass_rate, parcels);
+    injector.add(0, (count + 0.25) * injector.parcel_mass() / nozzle.mass_rate, parcels, {});
     EXPECT_EQ(parcels.count, count);
     const auto copy = [&](const auto& array, auto& to) {
       const auto host = Kokkos::create_mirror_view_and_copy(
@@ -73,7 +73,7 @@ TEST(Injector, MassIsRateTimesTimeToWithinHalfAParcelWhateverTheSteps) {
     Real time = 0;
     while (time < 0.2) {
       reserve(parcels, static_cast<Index>(injector.due(time + step)));
-      injector.add(time, time + step, parcels);
+      injector.add(time, time + step, parcels, {});
       time += step;
       const Real open = std::clamp(time, 0.01, 0.13) - 0.01;
       const Real injected = static_cast<Real>(injector.injected()) * injector.parcel_mass();
@@ -93,8 +93,8 @@ TEST(Injector, AParcelIsTheSameWhicheverStepItIsBornIn) {
   reserve(a, 1000);
   reserve(b, 1000);
   const Real end = 1e-3;
-  whole.add(0, end, a);
-  for (int k = 0; k < 10; ++k) parts.add(k * end / 10, (k + 1) * end / 10, b);
+  whole.add(0, end, a, {});
+  for (int k = 0; k < 10; ++k) parts.add(k * end / 10, (k + 1) * end / 10, b, {});
   ASSERT_EQ(a.count, b.count);
   ASSERT_GT(a.count, 500);
   for (Index i = 0; i < a.count; ++i) {
@@ -107,7 +107,7 @@ TEST(Injector, AParcelIsTheSameWhicheverStepItIsBornIn) {
   Injector other(nozzle, 4, 5);  // another nozzle draws other numbers
   Parcels c;
   reserve(c, 1000);
-  other.add(0, end, c);
+  other.add(0, end, c, {});
   EXPECT_FALSE(a.state(0).velocity == c.state(0).velocity);
 }
 

@@ -316,7 +316,7 @@ gas:
   boundaries: [{name: out, on: top, outlet: {}}]
 heat: {}
 spray: [{name: gun, position: [0.2, 0.2, 0.2], speed: 10, mass_rate: "1 g/min", solids_fraction: 0.2, droplet_diameter: "30 um"}]
-droplets: {momentum: two_way}
+droplets: {momentum: two_way, evaporation: true}
 )";
 
 /// Two particles and nothing else.

@@ -77,6 +77,14 @@ TEST(CaseSpray, ContradictionsAreRefusedWithTheirPlace) {
       errors({"spray=[{name: a, position: [0.5, 0.5, 0.5], speed: 1, mass_rate: 1, droplet_diameter: 1e-5}]"},
              tests::channel_case),
       "a case without particles has nothing to spray"));
+  // Evaporation of droplets needs heat, a gas that feels it, and room for liquid: 0.2/150 > 1/1000.
+  EXPECT_EQ(errors({}, tests::mist_case), "accepted");
+  EXPECT_TRUE(says(errors({"heat.evaporation=false"}, tests::mist_case),
+                   "droplets.evaporation: needs heat with evaporation"));
+  EXPECT_TRUE(says(errors({"coupling.exchange=one_way"}, tests::mist_case),
+                   "droplets.evaporation: the gas gives without losing"));
+  EXPECT_TRUE(says(errors({"coating.solids_density=150"}, tests::mist_case),
+                   "spray.gun.density: the solids in a droplet, of 150 kg/m3, leave no room"));
   // With its line.
   EXPECT_TRUE(says(errors({}, R"(domain: {min: [0, 0, 0], max: [1, 1, 1]}
 time: {end: 0.1, particle_step: 1e-5}

@@ -147,7 +147,10 @@ TEST(SpraySnapshots, AsManyRowsAsParcelsFly) {
   two.state.push_back({{0.4, 0.5, 0.6}, {0, 0, -2}, 40e-6, 20.5});
   two.name = {{7, 0, 0}, {3, 1, 0}};
   two.mass = {1e-9, 2e-9};
-  const std::vector<std::string> fields{"id", "nozzle", "velocity", "speed", "diameter", "droplets", "mass"};
+  two.liquid = {0.5e-9, 1.5e-9};
+  two.temperature = {300, 310};
+  const std::vector<std::string> fields{"id",       "nozzle", "velocity", "speed",      "diameter",
+                                        "droplets", "mass",   "liquid",   "temperature"};
   {
     SpraySnapshots snapshots(folder.path(), fields);
     snapshots.write(0, 0, {});
@@ -173,6 +176,8 @@ TEST(SpraySnapshots, AsManyRowsAsParcelsFly) {
   EXPECT_EQ(file.read<double>(group + "diameter"), (std::vector<double>{30e-6, 40e-6}));
   EXPECT_EQ(file.read<double>(group + "droplets"), (std::vector<double>{10, 20.5}));
   EXPECT_EQ(file.read<double>(group + "mass"), (std::vector<double>{1e-9, 2e-9}));
+  EXPECT_EQ(file.read<double>(group + "liquid"), (std::vector<double>{0.5e-9, 1.5e-9}));
+  EXPECT_EQ(file.read<double>(group + "temperature"), (std::vector<double>{300, 310}));
   const std::string xdmf = core::read_file(folder / "spray.xdmf");
   EXPECT_EQ(count_of(xdmf, "NumberOfElements=\"2\""), 1);
   EXPECT_EQ(count_of(xdmf, "spray.h5:/step0000000010/mass"), 1);

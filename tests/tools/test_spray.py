@@ -63,7 +63,7 @@ class Spray(unittest.TestCase):
     def check(self, summary):
         spray = summary["spray"]
         for nozzle in [spray, *spray["nozzles"].values()]:
-            ends = sum(nozzle[key] for key in ("captured", "wall_loss", "overspray", "in_flight"))
+            ends = sum(nozzle[key] for key in ("captured", "wall_loss", "overspray", "in_flight", "evaporated"))
             self.assertAlmostEqual(ends, nozzle["injected"], delta=1e-13 * nozzle["injected"])
         self.assertLess(summary["defects"]["water"], 1e-12)
         self.assertLess(summary["defects"]["solids"], 1e-12)
@@ -114,6 +114,40 @@ class Spray(unittest.TestCase):
                 self.assertGreater(max(map(abs, momentum[key])), 0, key)
             print(f"momentum defect: one way {defects['one_way']:.2g}, two way {defects['two_way']:.2g}")
             self.assertLess(defects["two_way"], 2 * defects["one_way"] + 1e-12)
+
+    def test_droplets_evaporate(self):
+        """Water, solids, energy and momentum close at every stop with droplets that evaporate; fine ones become dust."""
+        text = CASE.replace('"60 degC"', '"150 degC"').replace(
+            "output:\n", """  - {name: fine, position: ["12 mm", "18 mm", "55 mm"], axis: [0, 0, 1], speed: "1 m/s", mass_rate: "0.05 g/min",
+     solids_fraction: 0.3, droplet_diameter: "4 um", droplets_per_parcel: 100, temperature: "60 degC"}
+droplets: {momentum: two_way, evaporation: true}
+output:
+""")
+        with tempfile.TemporaryDirectory() as place:
+            place = Path(place)
+            (place / "case.yaml").write_text(text, encoding="utf-8")
+            summary = self.run_case(place, "--until", "1.5 ms")
+            self.check(summary)
+            for until in ("4.2 ms", "8 ms"):
+                summary = self.run_case(place, "--resume", "--until", until)
+                self.check(summary)
+            spray = summary["spray"]
+            momentum = spray["momentum"]
+            for axis in range(3):
+                came = sum(momentum[key][axis] for key in ("injected", "gravity", "bounced"))
+                went = sum(momentum[key][axis] for key in ("captured", "wall_loss", "overspray", "in_flight", "to_gas", "vapour"))
+                self.assertAlmostEqual(came, went, delta=1e-12 * abs(momentum["injected"][2]))
+            self.assertGreater(max(map(abs, momentum["vapour"])), 0)
+            self.assertEqual(spray["free_heat"], 0)
+            # In 150 degC a droplet of 4 um is dry after 1 to 2 ms: d2/K, K = 8 rho D 0.043/1000; some are caught or leave before.
+            fine = spray["nozzles"]["fine"]
+            self.assertGreater(fine["dried"], 0.1 * fine["injected"])
+            self.assertLessEqual(fine["dried"], 0.3 * fine["injected"] * (1 + 1e-12))
+            self.assertLessEqual(fine["dust_captured"], fine["dried"])
+            for name in ("below", "above"):
+                nozzle = spray["nozzles"][name]
+                self.assertGreater(nozzle["evaporated"], 1e-4 * nozzle["injected"], name)
+                self.assertLess(nozzle["evaporated"], 0.5 * nozzle["injected"], name)
 
     def test_without_gas_too(self):
         text = CASE[:CASE.index("gas:\n")] + CASE[CASE.index("spray:\n"):]

@@ -1,5 +1,7 @@
 #include "tools/pellicle/build_spray.hpp"
 
+#include "tools/pellicle/build_heat.hpp"
+
 namespace pellicle::tools {
 namespace {
 
@@ -40,6 +42,22 @@ spray::Nozzle make_nozzle(const NozzleSpec& spec) {
   return made;
 }
 
+spray::DropletHeat make_droplet_heat(const CaseSpec& spec) {
+  spray::DropletHeat heat;
+  if (!spec.droplets.evaporation) return heat;
+  const heat::HeatOptions options = make_heat_options(spec);
+  heat.on = true;
+  heat.water = options.water;
+  heat.solids_capacity = spec.coating.solids_heat_capacity;
+  heat.dry_capacity = options.gas.capacity;
+  heat.conductivity = options.gas.conductivity;
+  heat.diffusivity = options.gas.diffusivity;
+  heat.pressure = options.gas.pressure;
+  heat.saturation = static_cast<int>(options.saturation.index());
+  heat.stefan_flow = options.stefan_flow;
+  return heat;
+}
+
 }  // namespace
 
 spray::SprayOptions make_spray_options(const CaseSpec& spec) {
@@ -49,21 +67,24 @@ spray::SprayOptions make_spray_options(const CaseSpec& spec) {
   options.parcel_step = spec.time.parcel_step.value_or(0);
   options.seed = spec.seed;
   options.watch_momentum = spec.droplets.two_way;
+  options.heat = make_droplet_heat(spec);
+  options.solids_density = spec.coating.solids_density;
   return options;
 }
 
 spray::DropletGas make_droplet_gas(const CaseSpec& spec, const coupling::MomentumExchange& exchange,
-                                   const HostArray<Real>& open_volume, Real largest_parcel_mass) {
+                                   const HostArray<Real>& open_volume, const spray::WholeUnits& units) {
   const cfd::GasOptions& gas = spec.gas->options;
   spray::DropletGasOptions options;
   options.two_way = spec.droplets.two_way;
+  options.heat = make_droplet_heat(spec);
   options.density_varies = gas.density_law != cfd::DensityLaw::constant;
   options.viscosity_follows = gas.viscosity_law == cfd::ViscosityLaw::sutherland;
   spray::ParcelGas around;
   around.drag = {gas.density, gas.viscosity};
   around.grid = exchange.gas_locator();
   around.cut = exchange.cut_grid();
-  return {options, around, open_volume, largest_parcel_mass, spec.gravity};
+  return {options, around, open_volume, units, spec.gravity};
 }
 
 }  // namespace pellicle::tools

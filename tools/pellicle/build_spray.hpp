@@ -12,6 +12,6 @@ spray::SprayOptions make_spray_options(const CaseSpec& spec);
 
 /// The gas that parcels fly through; `open_volume` of its cells [m3].
 spray::DropletGas make_droplet_gas(const CaseSpec& spec, const coupling::MomentumExchange& exchange,
-                                   const HostArray<Real>& open_volume, Real largest_parcel_mass);
+                                   const HostArray<Real>& open_volume, const spray::WholeUnits& units);
 
 }  // namespace pellicle::tools

@@ -60,6 +60,11 @@ class Checker {
       check_followed(": output.snapshots", "particles",
                      field == "temperature" ? std::string_view("particle_temperature") : field);
     }
+    for (const auto& field : spec_.output.snapshots.spray) {
+      if (field == "temperature" && !spec_.droplets.evaporation && !spec_.spray.empty())
+        wrong(": output.snapshots", "spray",
+              "temperature needs droplets.evaporation, which the case has not; another name");
+    }
     for (const auto& histogram : spec_.output.histograms) {
       if (spec_.particles.empty())
         wrong(histogram.where, "quantity", "a case without particles has none; no histograms");

@@ -42,6 +42,26 @@ void check_conduction(const CaseSpec& spec, core::InputProblems& problems) {
   }
 }
 
+/// Droplets exchange what particles do.
+void check_droplets(const CaseSpec& spec, core::InputProblems& problems) {
+  if (!spec.droplets.evaporation) return;
+  const auto refuse = [&](const char* what) { problems.add(spec.where("droplets.evaporation"), what); };
+  if (!spec.heat || !spec.heat->evaporation.value_or(false)) {
+    refuse("needs heat with evaporation; false, or with heat and gas.moisture");
+  } else if (spec.coupling.exchange == coupling::Exchange::one_way) {
+    refuse("the gas gives without losing, with coupling.exchange one_way; false, or another exchange");
+  }
+  for (const NozzleSpec& nozzle : spec.spray) {
+    const Real s = nozzle.solids_fraction;
+    if (s == 1 || 1 / nozzle.density > s / spec.coating.solids_density) continue;
+    problems.add(
+        spec.where(fmt::format("spray.{}.density", nozzle.name)),
+        fmt::format("the solids in a droplet, of {:g} kg/m3, leave no room for its liquid; a smaller "
+                    "density, or a larger coating.solids_density",
+                    spec.coating.solids_density));
+  }
+}
+
 }  // namespace
 
 void check_heat(const CaseSpec& spec, core::InputProblems& problems) {
@@ -50,6 +70,7 @@ void check_heat(const CaseSpec& spec, core::InputProblems& problems) {
     problems.add(spec.where("coating.growth"),
                  "there are no films without heat or spray; none, or with one of them");
   }
+  check_droplets(spec, problems);
   if (!spec.heat) {
     for (std::size_t i = 0; i < spec.particles.size(); ++i) {
       for (const char* key : {"initial_temperature", "initial_liquid", "initial_solids"}) {

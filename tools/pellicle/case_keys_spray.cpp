@@ -96,9 +96,8 @@ void describe_nozzle(Keys& keys, NozzleSpec& nozzle) {
             {dimension::pure_number, range::from_0_to_1}, nozzle.solids_fraction);
   keys.real({"density", "of a droplet"}, {dimension::density, range::positive}, nozzle.density);
   keys.real({"temperature",
-             "of the droplets as they leave; they take that of the gas at once, and the summary says what "
-             "heat that "
-             "is"},
+             "of the droplets as they leave; without droplets.evaporation they take that of the gas at once, "
+             "and the summary says what heat that is"},
             {dimension::temperature, range::positive}, nozzle.temperature);
   describe_diameter(keys, nozzle);
   keys.real({"droplets_per_parcel",
@@ -122,6 +121,10 @@ void describe_droplets(Keys& keys, DropletSpec& droplets) {
   std::optional<int> momentum = droplets.two_way ? 1 : 0;
   keys.choice({"momentum", "whether droplets push the gas"}, momenta, momentum);
   droplets.two_way = *momentum == 1;
+  keys.flag({"evaporation",
+             "droplets keep the temperature that they leave with, and exchange heat and vapour with the "
+             "gas; needs heat.evaporation"},
+            droplets.evaporation);
 }
 
 }  // namespace

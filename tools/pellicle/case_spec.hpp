@@ -338,7 +338,8 @@ struct NozzleSpec {
 
 /// What droplets do in flight besides flying.
 struct DropletSpec {
-  bool two_way = false;  ///< they push the gas
+  bool two_way = false;      ///< they push the gas
+  bool evaporation = false;  ///< they have a temperature, and exchange heat and vapour with the gas
 };
 
 /// An interval of simulated time; both ends are filled in.

@@ -16,7 +16,9 @@ namespace pellicle::tools {
 struct HostParcels {
   std::vector<spray::ParcelState> state;
   std::vector<spray::ParcelName> name;
-  std::vector<Real> mass;  ///< of all its droplets [kg]
+  std::vector<Real> mass;         ///< of all its droplets [kg]
+  std::vector<Real> liquid;       ///< of this [kg]
+  std::vector<Real> temperature;  ///< [K]; 0 unless droplets have one of their own
   std::size_t count() const { return state.size(); }
 };
 

@@ -29,7 +29,7 @@ inline constexpr std::array<core::ModelInfo, 14> particle_snapshot_fields{{
 }};
 
 /// Fields of a snapshot of the spray (spray.h5), a row a parcel in flight; the position is always written.
-inline constexpr std::array<core::ModelInfo, 7> spray_snapshot_fields{{
+inline constexpr std::array<core::ModelInfo, 9> spray_snapshot_fields{{
     {"id", "number of the parcel among those of its nozzle, the same through the run [-]"},
     {"nozzle", "number of the nozzle, in the order of the case file [-]"},
     {"velocity", "velocity of the droplets, three components [m/s]"},
@@ -37,6 +37,8 @@ inline constexpr std::array<core::ModelInfo, 7> spray_snapshot_fields{{
     {"diameter", "diameter of each droplet [m]"},
     {"droplets", "droplets that the parcel stands for; no whole number [-]"},
     {"mass", "mass of all droplets of the parcel [kg]"},
+    {"liquid", "liquid in them [kg]"},
+    {"temperature", "of the droplets; needs droplets.evaporation [K]"},
 }};
 
 /// Fields of a gas snapshot (gas.h5), all at cell centres.

@@ -59,8 +59,7 @@ Simulation::Simulation(const CaseSpec& spec, const RunOptions& options)
   if (particles_ && gas_) exchange_.emplace(make_exchange(spec_, *gas_));
   if (spec_.heat) heat_.emplace(make_heat_options(spec_), gas_->geometry().volume);
   if (spray_ && exchange_) {
-    droplet_gas_.emplace(
-        make_droplet_gas(spec_, *exchange_, gas_->geometry().volume, spray_->largest_parcel_mass()));
+    droplet_gas_.emplace(make_droplet_gas(spec_, *exchange_, gas_->geometry().volume, spray_->units()));
   }
   if (spec_.heat && spec_.heat->contact_conduction) conduction_.emplace(make_conduction_options(spec_));
   for (const WallSpec& wall : spec_.walls) {
@@ -436,14 +435,14 @@ Real Simulation::energy_stock() const {
   if (const auto* vapour = gas_->balance(cfd::Scalar::moisture)) {
     stock += heat_->options().water.latent * vapour->stock;
   }
-  return stock + surface_->compute_totals().enthalpy;
+  return stock + surface_->compute_totals().enthalpy + summary_.spray.heat.in_flight;
 }
 
 /// Vapour in the gas, liquid on the particles and in flight [kg].
 Real Simulation::water_stock() const {
   Real stock = has_vapour() ? gas_->balance(cfd::Scalar::moisture)->stock : 0;
   if (surface_) stock += surface_->compute_totals().film.liquid;
-  return stock + summary_.spray.liquid(&spray::NozzleFigures::in_flight);
+  return stock + summary_.spray.liquid_in_flight();
 }
 
 /// What gas and particles exchange with each other stays inside, unless the gas gives without losing: that is a source, by
@@ -457,7 +456,7 @@ void Simulation::update_heat_ledger() {
   Real enthalpy = 0;  // that came with particles, with the droplets that they captured, and from walls [J]
   if (heat_) {
     enthalpy = surface_->entered().enthalpy - (surface_->left().enthalpy - settled_left_surface_.enthalpy) +
-               summary_.spray.heat.enthalpy - heat_to_walls();
+               summary_.spray.enthalpy_kept(spec_.droplets.evaporation) - heat_to_walls();
   }
   if (warmth) {
     const Real through =
@@ -473,7 +472,7 @@ void Simulation::update_heat_ledger() {
         Conserved::water,
         Vec3{vapour->through_boundaries() + films_that_came().liquid + summary_.spray.liquid_kept(), 0, 0},
         Vec3{heat_ ? -given.evaporated : vapour->sources, 0, 0},
-        vapour->gross + summary_.spray.liquid(&spray::NozzleFigures::injected));
+        vapour->gross + summary_.spray.liquid_injected());
   }
 }
 
@@ -499,7 +498,8 @@ void Simulation::update_ledger() {
   if (summary_.spray.two_way) {
     stock += summary_.spray.momentum.in_flight;
     through += summary_.spray.momentum_kept() + summary_.spray.impulses.bounced;
-    sources += summary_.spray.impulses.gravity;
+    // The gas counts the momentum of all vapour as a source, also of that which comes from droplets.
+    sources += summary_.spray.impulses.gravity - summary_.spray.impulses.vapour;
     gross += norm(summary_.spray.momentum.injected) + norm(summary_.spray.impulses.on_gas);
   }
   if (exchange_) {

@@ -77,13 +77,13 @@ void Simulation::update_spray_ledger() {
   const SprayFigures& spray = summary_.spray;
   const heat::Film came = films_that_came();
   const heat::Film film = surface_->compute_totals().film;
-  ledger_.set_stock(Conserved::solids, film.solids + spray.solids(&spray::NozzleFigures::in_flight));
+  ledger_.set_stock(Conserved::solids, film.solids + spray.total(&spray::NozzleFigures::in_flight_solids));
   ledger_.set_totals(Conserved::solids, Vec3{came.solids + spray.solids_kept(), 0, 0}, Vec3{},
-                     spray.solids(&spray::NozzleFigures::injected));
+                     spray.solids_injected());
   if (has_vapour()) return;
   ledger_.set_stock(Conserved::water, water_stock());
   ledger_.set_totals(Conserved::water, Vec3{came.liquid + spray.liquid_kept(), 0, 0}, Vec3{},
-                     spray.liquid(&spray::NozzleFigures::injected));
+                     spray.liquid_injected());
 }
 
 /// Films that fed particles brought, less those that left with particles, since t = 0 [kg].

@@ -146,6 +146,10 @@ void write_spray_field(core::Hdf5File& file, const std::string& group, const std
     put([&](std::size_t i) { return states[i].droplets; });
   } else if (field == "mass") {
     put([&](std::size_t i) { return parcels.mass[i]; });
+  } else if (field == "liquid") {
+    put([&](std::size_t i) { return parcels.liquid[i]; });
+  } else if (field == "temperature") {
+    put([&](std::size_t i) { return parcels.temperature[i]; });
   } else {
     throw std::logic_error("no spray field " + field);
   }

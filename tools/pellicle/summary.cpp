@@ -31,7 +31,8 @@ double particle_seconds(const Summary& summary) {
 constexpr std::pair<const char*, Real spray::NozzleFigures::*> spray_masses[] = {
     {"injected", &spray::NozzleFigures::injected},   {"captured", &spray::NozzleFigures::captured},
     {"wall_loss", &spray::NozzleFigures::wall_loss}, {"overspray", &spray::NozzleFigures::overspray},
-    {"in_flight", &spray::NozzleFigures::in_flight},
+    {"in_flight", &spray::NozzleFigures::in_flight}, {"evaporated", &spray::NozzleFigures::evaporated},
+    {"dried", &spray::NozzleFigures::dried},         {"dust_captured", &spray::NozzleFigures::dust_captured},
 };
 
 Json vector_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
@@ -47,6 +48,7 @@ Json momentum_json(const SprayFigures& spray) {
   json["to_gas"] = vector_json(spray.impulses.on_gas);
   json["bounced"] = vector_json(spray.impulses.bounced);
   json["gravity"] = vector_json(spray.impulses.gravity);
+  json["vapour"] = vector_json(spray.impulses.vapour);
   return json;
 }
 
@@ -335,12 +337,15 @@ std::string report_text(const Summary& summary) {
     const auto share = [&](Real spray::NozzleFigures::*mass) {
       return injected > 0 ? 100 * spray.total(mass) / injected : 0;
     };
-    line("sprayed", fmt::format("{:.6g} kg, {:.4g} kg of it solids", injected,
-                                spray.solids(&spray::NozzleFigures::injected)));
+    line("sprayed", fmt::format("{:.6g} kg, {:.4g} kg of it solids", injected, spray.solids_injected()));
     line("  captured", fmt::format("{:.2f} %", share(&spray::NozzleFigures::captured)));
     line("  on walls", fmt::format("{:.2f} %", share(&spray::NozzleFigures::wall_loss)));
     line("  left the domain", fmt::format("{:.2f} %", share(&spray::NozzleFigures::overspray)));
     line("  in flight", fmt::format("{:.2f} %", share(&spray::NozzleFigures::in_flight)));
+    if (spray.total(&spray::NozzleFigures::evaporated) != 0) {
+      line("  evaporated in flight", fmt::format("{:.2f} %", share(&spray::NozzleFigures::evaporated)));
+      line("  solids dried to dust", fmt::format("{:.2f} %", share(&spray::NozzleFigures::dried)));
+    }
     if (spray.heat.free_heat != 0)
       line("  heated for nothing", fmt::format("{:.4g} J", spray.heat.free_heat));
   }
