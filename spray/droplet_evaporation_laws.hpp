@@ -47,7 +47,8 @@ struct DropletSurroundings {
 struct DropletExchange {
   Real evaporated = 0;  ///< [kg]; negative: condensed
   Real heat = 0;        ///< from the gas [J]
-  Real reach = 0;       ///< mass of gas that would come to the droplets' state if it were all that they exchange with [kg]
+  Real reach =
+      0;  ///< mass of gas that would come to the droplets' state if it were all that they exchange with [kg]
 };
 
 /// What a parcel exchanges within `time` [s] at a slip [m/s]. Never more than the liquid there is; where there is none, heat

@@ -299,14 +299,8 @@ void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& s
   if (options_.heat.on) count_ended_water();
   if (captured == 0) return;
   hits_.sort(captured);
-  HitTargets targets{surface.bare(particles),
-                     surface.film(),
-                     records_.values(),
-                     {},
-                     surface.heat_capacity(),
-                     surface.capacities(),
-                     gas_temperature,
-                     nozzle_temperature_,
+  HitTargets targets{surface.bare(particles), surface.film(),       records_.values(), {},
+                     surface.heat_capacity(), surface.capacities(), gas_temperature,   nozzle_temperature_,
                      options_.heat.on};
   const bool warm = gas_temperature.extent(0) > 0;
   if (warm) targets.temperature = surface.temperature();

@@ -63,8 +63,7 @@ struct LoneDroplet {
     const DropletExchange got = exchange_of(heat, load, gas, slip, time);
     enthalpy += got.heat - got.evaporated * heat.water.vapour(298.15 + load.warmth);
     load.liquid -= got.evaporated;
-    if (load.liquid + load.solids > 0)
-      load.warmth = enthalpy / heat.capacity(load.liquid, load.solids);
+    if (load.liquid + load.solids > 0) load.warmth = enthalpy / heat.capacity(load.liquid, load.solids);
     load.diameter = std::cbrt(6 / M_PI * (load.liquid / density + load.solids / solids_density));
   }
 };
@@ -185,7 +184,8 @@ struct ClosedGas {
     const Real mass = dry + vapour;
     const Vec3 before = (mass - came) * state.velocity(0);
     state.velocity(0) =
-        1 / mass * (before + step * volume(0) * (exchange.explicit_force(0) + exchange.mass_source_momentum(0)));
+        1 / mass *
+        (before + step * volume(0) * (exchange.explicit_force(0) + exchange.mass_source_momentum(0)));
     update();
   }
 };
