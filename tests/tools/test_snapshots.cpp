@@ -59,7 +59,7 @@ TEST(ParticleSnapshots, ResumeDropsLaterSteps) {
   TemporaryFolder folder;
   {
     ParticleSnapshots snapshots(folder.path(), {"id"});
-    for (int n = 0; n < 4; ++n) snapshots.write(100 * n, 0.1 * n, some_particles(n + 1));
+    for (int n = 0; n < 4; ++n) snapshots.write(std::int64_t{100} * n, 0.1 * n, some_particles(n + 1));
   }
   {
     ParticleSnapshots snapshots(folder.path(), {"id", "speed"}, 150);
