@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "cfd/plane_region.hpp"
 #include "core/error.hpp"
@@ -59,6 +61,27 @@ void check_values(const BoundaryPatch& patch) {
   }
 }
 
+// "wall 'a'" or "walls 'a', 'b'": the surfaces that come next to these points. A hundred points will tell.
+std::string walls_at(const FlowGeometry& geometry, const std::vector<Vec3>& points) {
+  std::set<std::int32_t> found;
+  const std::size_t stride = 1 + points.size() / 100;
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    Real least = std::numeric_limits<Real>::infinity();
+    std::int32_t nearest = -1;
+    for (const SurfacePiece& piece : geometry.pieces) {
+      const Real distance = norm_squared(piece.point - points[i]);
+      if (distance < least) least = distance, nearest = piece.surface;
+    }
+    if (nearest >= 0) found.insert(nearest);
+  }
+  std::string names;
+  for (const std::int32_t surface : found) {
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ",
+                         geometry.surfaces[static_cast<std::size_t>(surface)].name);
+  }
+  return (found.size() == 1 ? "wall " : "walls ") + names;
+}
+
 // Cuts one side and adds its pieces.
 class SideCutter {
  public:
@@ -79,7 +102,7 @@ class SideCutter {
     const CartesianGrid& grid = geometry_.grid;
     const Index3 n = geometry_.stencil.n;
     const Index along = is_max(side_) ? n[axis_] - 1 : 0;
-    std::vector<Real> covered(patches_.size(), 0);
+    std::vector<Covered> covered(patches_.size());
     for (Index b = 0; b < n[across_[1]]; ++b) {
       for (Index a = 0; a < n[across_[0]]; ++a) {
         Index3 at{0, 0, 0};
@@ -103,14 +126,21 @@ class SideCutter {
   }
 
  private:
+  // What a patch got of the side.
+  struct Covered {
+    Real area = 0;           // [m2]
+    std::vector<Vec3> shut;  // middles of its faces that surfaces close, in whole or in part [m]
+  };
+
   // Of a face that surfaces within the domain close in part, the regions take what they cover of the open part.
   void cut_face(Boundaries& result, const Index3& at, const Rectangle& face,
-                std::vector<Real>& covered) const {
+                std::vector<Covered>& covered) const {
     const Stencil& s = geometry_.stencil;
     const Index f = s.face(axis_, at.x, at.y, at.z) + (is_max(side_) ? s.face_step(axis_) : 0);
     const Real open = geometry_.area[static_cast<std::size_t>(axis_)](f);
-    if (open == 0) return;
     const Real whole = face.area();
+    if (open < (1 - 1e-9) * whole) note_shut(face, covered);
+    if (open == 0) return;
     std::vector<std::pair<int, Real>> shares;
     Real taken = 0;
     for (const auto& [patch, region] : regions_) {
@@ -122,13 +152,25 @@ class SideCutter {
     const Real scale = taken > open ? open / taken : 1;
     for (const auto& [patch, area] : shares) {
       add(result, at, patch, scale * area);
-      covered[static_cast<std::size_t>(patch)] += scale * area;
+      covered[static_cast<std::size_t>(patch)].area += scale * area;
     }
     const Real left = open - scale * taken;
     if (left > 1e-12 * whole) {
       add(result, at, rest_, left);
-      if (rest_ >= 0) covered[static_cast<std::size_t>(rest_)] += left;
+      if (rest_ >= 0) covered[static_cast<std::size_t>(rest_)].area += left;
     }
+  }
+
+  void note_shut(const Rectangle& face, std::vector<Covered>& covered) const {
+    const Box& box = geometry_.grid.box();
+    Vec3 middle;
+    middle[axis_] = is_max(side_) ? box.max[axis_] : box.min[axis_];
+    for (std::size_t d = 0; d < 2; ++d) middle[across_[d]] = 0.5 * (face.min[d] + face.max[d]);
+    const auto note = [&](int patch) { covered[static_cast<std::size_t>(patch)].shut.push_back(middle); };
+    for (const auto& [patch, region] : regions_) {
+      if (region.area_within(face) > 0) note(patch);
+    }
+    if (rest_ >= 0) note(rest_);
   }
 
   void collect_regions() {
@@ -187,18 +229,29 @@ class SideCutter {
     }
   }
 
-  void check_covered(const std::vector<Real>& covered) const {
+  void check_covered(const std::vector<Covered>& covered) const {
     for (std::size_t p = 0; p < patches_.size(); ++p) {
-      if (!patches_[p].wall && patches_[p].on == side_ && covered[p] <= 0) {
-        refuse(
-            patches_[p],
-            geometry_.is_cut
-                ? fmt::format("is outside of the gas: walls keep it from every face that it covers of the {} "
-                              "side; allowed: a part of the side that the gas reaches",
-                              name_of(side_))
-                : fmt::format("covers no face of the {} side; allowed: a part that no other boundary takes",
-                              name_of(side_)));
-      }
+      if (patches_[p].wall || patches_[p].on != side_ || covered[p].area > 0) continue;
+      refuse(patches_[p],
+             geometry_.is_cut
+                 ? fmt::format("is outside of the gas: all that it covers of the {} side is behind {}; "
+                               "allowed: a part of the side that the gas reaches",
+                               name_of(side_), walls_at(geometry_, covered[p].shut))
+                 : fmt::format("covers no face of the {} side; allowed: a part that no other boundary takes",
+                               name_of(side_)));
+    }
+    constexpr Real mostly = 0.9;
+    for (const auto& [patch, region] : regions_) {
+      const auto p = static_cast<std::size_t>(patch);
+      const Real area = region.area_within(whole_);
+      if (!geometry_.is_cut || !std::holds_alternative<Inlet>(patches_[p].kind) ||
+          covered[p].area >= mostly * area)
+        continue;
+      refuse(
+          patches_[p],
+          fmt::format("is an inlet of {:.4g} m2 of which only {:.4g} m2 is open, the rest being behind {}; "
+                      "allowed: an inlet within the gas",
+                      area, covered[p].area, walls_at(geometry_, covered[p].shut)));
     }
   }
 
@@ -300,15 +353,6 @@ void set_inlet_velocities(Boundaries& result, const std::vector<BoundaryPatch>& 
   std::vector<Real> area(patches.size(), 0);
   for (const BoundaryPiece& piece : result.pieces) {
     if (piece.patch >= 0) area[static_cast<std::size_t>(piece.patch)] += piece.area;
-  }
-  constexpr Real mostly = 0.9;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    if (!is_cut || !std::holds_alternative<Inlet>(patches[p].kind) || area[p] >= mostly * region_areas[p])
-      continue;
-    refuse(patches[p],
-           fmt::format("is an inlet of {:.4g} m2 of which walls leave {:.4g} m2 open; allowed: an inlet "
-                       "within the gas",
-                       region_areas[p], area[p]));
   }
   Real net_inflow = 0;
   Real gross = 0;

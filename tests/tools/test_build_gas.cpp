@@ -51,19 +51,49 @@ TEST(BuildGas, WallsCutTheGrid) {
 // A closed vessel needs a way in, and the gas must be where the inlets are.
 TEST(BuildGas, MessagesSayWhatIsWrong) {
   EXPECT_EQ(error_of({"gas.boundaries.jet.region.disc.centre=[55 mm, 55 mm, 0]"}),
-            "c.yaml:13: gas.boundaries.jet: boundary 'jet' is outside of the gas: walls keep it from every "
-            "face that it "
-            "covers of the bottom side; allowed: a part of the side that the gas reaches");
+            "c.yaml:13: gas.boundaries.jet: boundary 'jet' is outside of the gas: all that it covers of the "
+            "bottom side is behind wall 'cone'; allowed: a part of the side that the gas reaches");
   EXPECT_EQ(error_of({"gas.boundaries.plate.region.disc.radius=45 mm"}),
-            "c.yaml:14: gas.boundaries.plate: boundary 'plate' is an inlet of 0.006283 m2 of which walls "
-            "leave 0.002737 m2 "
-            "open; allowed: an inlet within the gas");
+            "c.yaml:14: gas.boundaries.plate: boundary 'plate' is an inlet of 0.006283 m2 of which only "
+            "0.002737 m2 is open, the rest being behind wall 'cone'; allowed: an inlet within the gas");
   EXPECT_EQ(
       error_of({"gas.inside=[0, 0, 200 mm]"}),
       "--set: gas.inside: it is out of the domain; a point within [-0.06, -0.06, 0] to [0.06, 0.06, 0.15] m");
   EXPECT_NE(error_of({"gas.boundaries.top.on=left"}).find("outside of the gas"), std::string::npos);
   const std::string closed = error_of({"walls.sieve.gas=no_slip", "walls.sieve.disc.radius=50 mm"});
-  EXPECT_NE(closed.find("boundary 'jet' is outside of the gas"), std::string::npos) << closed;
+  EXPECT_NE(closed.find(
+                "boundary 'jet' is outside of the gas: all that it covers of the bottom side is behind wall "
+                "'sieve'"),
+            std::string::npos)
+      << closed;
+}
+
+// The plate's radius is 30 mm, the domain ends at -60 mm.
+TEST(BuildGas, AnInletDiscEndsInTheDomainOrAtAPlaneOfSymmetry) {
+  const std::string disc = "gas.boundaries.plate.region.disc.centre=";
+  const std::string open = tests::chamber_case;
+  const std::string mirrored = open + "    - {name: mirror, on: left, symmetry: {}}\n";
+  const std::string what =
+      "; a disc within [-0.06, -0.06, 0] to [0.06, 0.06, 0.15] m, or a plane of symmetry on that side with "
+      "its "
+      "centre in the domain";
+  const std::string path = "c.yaml:14: gas.boundaries.plate.region.disc: ";
+  const auto refusal = [](const std::string& text, const std::string& assignment) -> std::string {
+    try {
+      parse_case(text, "c.yaml", {assignment});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal(open, disc + "[-30 mm, 0, 0]"), "accepted");
+  EXPECT_EQ(refusal(open, disc + "[-40 mm, 0, 0]"),
+            path + "it reaches 0.01 m beyond the left side of the domain" + what);
+  EXPECT_EQ(refusal(open, disc + "[0, 50 mm, 0]"),
+            path + "it reaches 0.02 m beyond the back side of the domain" + what);
+  EXPECT_EQ(refusal(mirrored, disc + "[-60 mm, 0, 0]"), "accepted");
+  EXPECT_EQ(refusal(mirrored, disc + "[-70 mm, 0, 0]"),
+            path + "it reaches 0.04 m beyond the left side of the domain" + what);
 }
 
 // Without gas.inside the inlets say where the gas is: the odd one is named, not the one that is right.

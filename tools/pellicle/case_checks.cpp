@@ -369,6 +369,31 @@ class Checker {
       if (patch.region && !(inside(patch.region->min) && inside(patch.region->max))) {
         wrong(patch.where, "region", "it reaches out of the domain; " + domain_text());
       }
+      if (patch.disc && std::holds_alternative<cfd::Inlet>(patch.kind)) check_inlet_disc(patch);
+    }
+  }
+  /// A disc may be cut by a plane of symmetry. Else what lies beyond the domain would bring in no gas, unsaid.
+  void check_inlet_disc(const cfd::BoundaryPatch& patch) {
+    const auto mirrors = [&](cfd::Side side) {
+      return std::any_of(spec_.gas->boundaries.begin(), spec_.gas->boundaries.end(), [&](const auto& other) {
+        return !other.wall && other.on == side && std::holds_alternative<cfd::Symmetry>(other.kind);
+      });
+    };
+    const Box& box = spec_.domain.box;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis == cfd::axis_of(patch.on)) continue;
+      const Real slack = 1e-9 * (box.max[axis] - box.min[axis]);
+      const Real centre = patch.disc->centre[axis], radius = patch.disc->radius;
+      for (const bool upper : {false, true}) {
+        const auto side = static_cast<cfd::Side>(2 * axis + (upper ? 1 : 0));
+        const Real beyond = upper ? centre + radius - box.max[axis] : box.min[axis] - (centre - radius);
+        const bool middle_is_out = upper ? centre > box.max[axis] + slack : centre < box.min[axis] - slack;
+        if (beyond <= slack || (mirrors(side) && !middle_is_out)) continue;
+        wrong(patch.where, "region.disc",
+              fmt::format("it reaches {:.4g} m beyond the {} side of the domain; a disc {}, or a plane of "
+                          "symmetry on that side with its centre in the domain",
+                          beyond, side_name(side), domain_text()));
+      }
     }
   }
   /// A wall that is a boundary is one that the gas sees, and no other boundary.
