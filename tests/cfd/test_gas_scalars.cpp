@@ -111,6 +111,47 @@ TEST(IdealGas, HeatedDuctExpands) {
   EXPECT_NEAR(balance.sources / (rate * 0.02 * 0.02 * 0.2 * 2), 1, 1e-12);
 }
 
+// All of the air in a closed duct with an open top is heated in one step by as much as thins it by a tenth; in the next it
+// expands from rest. The mass says what passes a height z: rho u = (rho_old - rho) z / dt, so u = s z with
+// s = (rho_old - rho) / (rho dt). Momentum, d(rho u)/dt + d(rho u^2)/dz = -dp/dz, is then
+// rho s z / dt + 2 rho s^2 z = (2 rho_old - rho) s z / dt. With the density of the wrong time level in the inertia of the
+// faces it would be 8 % less.
+TEST(IdealGas, PressureOfAGasThatExpandsFromRest) {
+  constexpr Index cells = 20;
+  constexpr Real height = 0.2, dt = 1e-3, warmer = 30;
+  const CartesianGrid grid(Box{{0, 0, 0}, {0.02, 0.02, height}}, {1, 1, cells});
+  GasOptions options = make_air(Convection::central);
+  make_tight(options);
+  options.viscosity = 0;
+  options.solver.max_outer_iterations = 40;
+  options.solver.outer_tolerance = 1e-12;
+  add_heat(options, 300).conductivity = 0;
+  make_ideal(options, 300);
+  auto patches = symmetry_on({Side::x_min, Side::x_max, Side::y_min, Side::y_max, Side::z_min});
+  patches.push_back({"top", Side::z_max, {}, Outlet{0}, "case.yaml:3"});
+  GasSolver solver(grid, options, patches);
+  auto exchange = make_empty_exchange(grid);
+  auto& heat = exchange.scalars[index_of(Scalar::temperature)];
+  heat = {HostArray<Real>("tests::heat", cells), HostArray<Real>("tests::heat_coefficient", cells)};
+  const Real old = ideal_gas_density(101325, 300, 0), now = ideal_gas_density(101325, 300 + warmer, 0);
+  Kokkos::deep_copy(heat.rate, 1006 * old * warmer / dt);
+  advance(solver, exchange, dt, 2);
+  const Real s = (old - now) / (now * dt);
+  const Real slope = (2 * old - now) * s / dt;  // of -dp/dz over z
+  for (Index k = 0; k < cells; ++k) {
+    EXPECT_NEAR(solver.state().density(k) / now, 1, 1e-9);
+    EXPECT_NEAR(solver.state().volume_flux[2](k) / (4e-4 * s * 0.01), k, 1e-6);
+  }
+  // Where gas expands, the convection of a face is that between its cells only up to rho s^2 dz / 4: 2.1 % of the lowest
+  // difference, and less above; at the outlet the extrapolated velocity leaves 1.2 %.
+  for (Index k = 0; k + 1 < cells; ++k) {
+    const Real z = 0.01 * (k + 1);
+    const Real difference = solver.state().pressure(k) - solver.state().pressure(k + 1);
+    EXPECT_NEAR(difference / (slope * z * 0.01), 1, 0.025) << "face " << k + 1;
+  }
+  EXPECT_NEAR(solver.state().pressure(cells - 1) / (slope * height * 0.005), 1, 0.025) << "outlet";
+}
+
 // A volume flow rate is at the inlet's own temperature: the mass that comes in is that of hot air.
 TEST(IdealGas, InletFlowIsAtItsOwnTemperature) {
   const CartesianGrid grid(Box{{0, 0, 0}, {0.1, 0.1, 0.3}}, {2, 2, 6});
