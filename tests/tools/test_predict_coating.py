@@ -33,19 +33,19 @@ def draw(rng, particles, until, gamma_shape, factor):
     return entries, gains
 
 
-def write_results(folder, entries, gains, times, classes, longest=4.0, bins=40):
+def write_results(folder, entries, gains, times, classes, longest=4.0, bins=40, initial=None):
     (folder / "zones").mkdir()
     (folder / "histograms").mkdir()
     groups, histogram = [], []
     for time in times:
-        rows = tables_at(entries, gains, time, classes, longest, bins)
+        rows = tables_at(entries, gains, time, classes, longest, bins, initial or [0.0] * len(entries))
         groups += rows[0] if not groups else rows[0][1:]
         histogram += rows[1] if not histogram else rows[1][1:]
     (folder / "zones" / "pass_groups.csv").write_text("\n".join(groups) + "\n")
     (folder / "histograms" / "pass_times.csv").write_text("\n".join(histogram) + "\n")
 
 
-def tables_at(entries, gains, time, classes, longest, bins):
+def tables_at(entries, gains, time, classes, longest, bins, initial):
     header = ("time [s],size_class [-],diameter_from [m],diameter_to [m],group [-],particles [-],entered [-],entries [-],"
               "cycles [-],cycle_time [s],cycle_time_squared [s2],gain [kg],gain_squared [kg2],time_gain [s kg],"
               "coating [kg],coating_squared [kg2]")
@@ -57,7 +57,7 @@ def tables_at(entries, gains, time, classes, longest, bins):
         cycles = np.diff(t)
         # From entry to entry: what the first of the two brought.
         between = g[:-1]
-        coating = g.sum()
+        coating = initial[p] + g.sum()
         row = sums[classes[p], p % GROUPS]
         row += [1, len(t) > 0, len(t), len(cycles), cycles.sum(), (cycles**2).sum(), between.sum(), (between**2).sum(),
                 (cycles * between).sum(), coating, coating**2]
@@ -82,7 +82,7 @@ def run(folder, *more):
 
 
 class Predict(unittest.TestCase):
-    def check(self, gamma_shape, sizes, seed, spray_start=0.0):
+    def check(self, gamma_shape, sizes, seed, spray_start=0.0, initial=None):
         rng = np.random.default_rng(seed)
         particles, measured, batch = 3000, 4.0, 40.0
         classes = [p % sizes for p in range(particles)]
@@ -91,13 +91,15 @@ class Predict(unittest.TestCase):
         gains = [np.where(when < spray_start, 0, gain) for when, gain in zip(entries, gains)]
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            write_results(folder, entries, gains, [0.5 * (spray_start + measured), measured], classes)
+            start = [0.0] if initial else []  # without a first table nothing was coated before
+            write_results(folder, entries, gains, [*start, 0.5 * (spray_start + measured), measured], classes,
+                          initial=initial)
             (folder / "case.yaml").write_text(f"spray:\n- name: a\n  from: {spray_start}  # [s]\n  to: 40  # [s]\n- name: b\n"
                                               "  from: 30.5  # [s]\noutput:\n- from: -7\n")
             done = run(folder, "--time", batch, "--json", folder / "p.json")
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             found = json.loads((folder / "p.json").read_text())
-        coating = np.array([g.sum() for g in gains])
+        coating = np.array([g.sum() for g in gains]) + np.array(initial or 0.0)
         direct = coating.std() / coating.mean()
         prediction = found["predictions"][0]
         # The error of the directly drawn coefficient is about itself / sqrt(2 particles), 1.3 %.
@@ -129,6 +131,49 @@ class Predict(unittest.TestCase):
         basis, prediction = self.check(4, 2, 3)
         self.assertAlmostEqual(basis["variation_of_size_classes"], 0.25, delta=0.03)
         self.assertGreater(prediction["coating_cov"], 0.29)
+
+    def test_what_was_there_at_the_start_stays(self):
+        # 20 ug on each at the start, 1 ug/s for 40 s: 60 ug; sqrt(1.25 * 40) / 60 = 0.118 if all started alike. 10 % scatter
+        # of the 20 ug adds 2 ug to 7.07: 0.122.
+        start = 20e-9 * (1 + 0.1 * np.random.default_rng(9).standard_normal(3000))
+        basis, prediction = self.check(4, 1, 5, initial=list(start))
+        self.assertAlmostEqual(basis["initial_coating"], 20e-9, delta=0.1e-9)
+        self.assertAlmostEqual(prediction["coating_mean"], 60e-9, delta=1.5e-9)
+        self.assertAlmostEqual(prediction["coating_cov"], 0.122, delta=0.008)
+
+    def test_classes_that_began_apart(self):
+        # 10 and 30 ug at the start, rates 0.75 and 1.25 ug/s: 40 and 80 ug after 40 s, 20 ug about 60.
+        start = [10e-9 + 20e-9 * (p % 2) for p in range(3000)]
+        _, prediction = self.check(4, 2, 6, initial=start)
+        self.assertAlmostEqual(prediction["coating_mean"], 60e-9, delta=1.5e-9)
+        self.assertGreater(prediction["coating_cov"], 20 / 60)
+
+    def refused(self, case, particles):
+        """What is said of a run whose first table has all particles and whose last has some."""
+        rng = np.random.default_rng(3)
+        entries, gains = draw(rng, 400, 4.0, 4, np.ones(400))
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            write_results(folder, entries, gains, [0.0], [0] * 400)
+            first = [(folder / f).read_text() for f in ("zones/pass_groups.csv", "histograms/pass_times.csv")]
+            for f in ("zones/pass_groups.csv", "histograms/pass_times.csv"):
+                (folder / f).unlink()
+            (folder / "zones").rmdir()
+            (folder / "histograms").rmdir()
+            write_results(folder, entries[:particles], gains[:particles], [4.0], [0] * particles)
+            for f, begun in zip(("zones/pass_groups.csv", "histograms/pass_times.csv"), first):
+                (folder / f).write_text(begun + (folder / f).read_text().split("\n", 1)[1])
+            (folder / "case.yaml").write_text(case)
+            done = run(folder, "--time", 40)
+        self.assertNotEqual(done.returncode, 0)
+        return done.stderr
+
+    def test_particles_that_come_and_go_are_refused(self):
+        self.assertIn("not the same throughout: 400 at the start, 390 at the end", self.refused("", 390))
+
+    def test_nozzle_that_closes_is_refused(self):
+        case = "spray:\n- name: a\n  from: 0  # [s]\n  to: 3  # [s]\noutput:\n- to: -7\n"
+        self.assertIn("closes at 3 s", self.refused(case, 400))
 
     def test_spray_that_begins_later(self):
         # Of 40 s the last 38.5: sqrt((1 + 0.25) / 38.5) = 0.180. Of the 4 s measured 1.5 are without spray.

@@ -9,7 +9,8 @@ the coating M(t) has, for t well over a cycle,
     var M = t / mean(tau) (var g + r^2 var tau - 2 r cov(g, tau))
 
 The spray may begin later than the run (`spray.from`, read from the results' case.yaml): t counts from there, cycles from
-the run's start.
+the run's start. What the particles were coated with at the start (`initial_solids`, the table's first rows) stays and is
+added to what they gain. The particles have to be the same throughout.
 
 What a short run measures of this is censored: long cycles do not end in it. Mean(tau) is therefore particles x time /
 entries, which needs no cycle to end; var tau comes from the Kaplan-Meier estimate of the distribution (Kaplan & Meier 1958,
@@ -50,13 +51,15 @@ def nearest(tables, wanted):
     return min(tables, key=lambda rows: abs(rows[0]["time"] - wanted))
 
 
-def read_spray_start(case):
-    """The earliest `from` of the nozzles in a case as run [s]; 0 without such a file or without spray."""
+def read_spray_times(case):
+    """Of the nozzles in a case as run, the earliest `from` and the earliest `to` [s]; 0 and infinity without such a file or
+    without spray."""
     if not case.is_file():
-        return 0.0
+        return 0.0, math.inf
     block = re.search(r"^spray:\n((?:[ -].*\n)*)", case.read_text(), re.MULTILINE)
     starts = re.findall(r"^[ -] from: ([-+.0-9e]+)", block[1], re.MULTILINE) if block else []
-    return min(map(float, starts), default=0.0)
+    ends = re.findall(r"^[ -] to: ([-+.0-9e]+)", block[1], re.MULTILINE) if block else []
+    return min(map(float, starts), default=0.0), min(map(float, ends), default=math.inf)
 
 
 def survival(times):
@@ -106,62 +109,79 @@ def add(rows):
     return total
 
 
-def moments(sums, time, sprayed):
-    """Of cycles from sums over particles in `time`, of which they were `sprayed` for so long; `steady` needs none to have
-    ended."""
+def moments(sums, before, time, sprayed):
+    """Of cycles from sums over particles in `time`, of which they were `sprayed` for so long; `before` are those at the
+    start. `steady` needs no cycle to have ended."""
     n = sums["cycles"]
-    if n < 2 or sums["entries"] < 1 or sums["coating"] <= 0:
+    gained = sums["coating"] - before["coating"]
+    if n < 2 or sums["entries"] < 1 or gained <= 0:
         return None
     # Cycles before the spray brought nothing; they are that share of all of them.
     gain, gain_squared, time_gain = (sums[name] * time / sprayed for name in ("gain", "gain_squared", "time_gain"))
     mean_time, mean_gain = sums["cycle_time"] / n, gain / n
     return {
         "steady": sums["particles"] * time / sums["entries"],
-        "rate": sums["coating"] / sums["particles"] / sprayed,
+        "initial": before["coating"] / sums["particles"],
+        "rate": gained / sums["particles"] / sprayed,
         "time_variance": max(0.0, (sums["cycle_time_squared"] - n * mean_time**2) / (n - 1)),
         "gain_variance": max(0.0, (gain_squared - n * mean_gain**2) / (n - 1)),
         "covariance": (time_gain - n * mean_time * mean_gain) / (n - 1),
     }
 
 
-def variation_of_classes(rows):
-    """Coefficient of variation of the rates of the size classes, less what the scatter within them adds."""
+def by_class(rows):
     classes = {}
     for row in rows:
         classes.setdefault(row["size_class"], []).append(row)
-    if len(classes) < 2:
+    return {name: add(members) for name, members in classes.items()}
+
+
+def scatter_within(sums):
+    """Sum over particles of the squared deviation from their mean coating [kg2]."""
+    return max(0.0, sums["coating_squared"] - sums["coating"] ** 2 / sums["particles"]) if sums["particles"] else 0.0
+
+
+def variance_of_classes(rows, before, scale):
+    """Of the size classes' mean coatings [kg2] when each has gained `scale` times what it has so far, less what the scatter
+    within the classes adds."""
+    parts, starts = by_class(rows), by_class(before)
+    if len(parts) < 2:
         return 0.0
-    total = add(rows)
-    mean = total["coating"] / total["particles"]
+
+    def expected(sums, start):
+        return (start["coating"] + scale * (sums["coating"] - start["coating"])) / sums["particles"]
+
+    mean = expected(add(rows), add(before))
     variance = 0.0
-    for members in classes.values():
-        part = add(members)
+    for name, part in parts.items():
         if part["particles"] < 2:
             continue
-        own = part["coating"] / part["particles"]
-        scatter = max(0.0, part["coating_squared"] / part["particles"] - own**2) / part["particles"]
-        variance += part["particles"] / total["particles"] * ((own - mean) ** 2 - scatter)
-    return math.sqrt(max(0.0, variance)) / mean
+        scatter = max(0.0, scatter_within(part) - scatter_within(starts[name])) / part["particles"] ** 2
+        share = part["particles"] / add(rows)["particles"]
+        variance += share * ((expected(part, starts[name]) - mean) ** 2 - scale**2 * scatter)
+    return max(0.0, variance)
 
 
 def variance_within_classes(rows):
     """Of the coating of a particle [kg2]."""
-    classes = {}
-    for row in rows:
-        classes.setdefault(row["size_class"], []).append(row)
-    sums = [add(members) for members in classes.values()]
-    scatter = sum(c["coating_squared"] - c["coating"] ** 2 / c["particles"] for c in sums if c["particles"] > 0)
-    return scatter / sum(c["particles"] for c in sums)
+    sums = by_class(rows).values()
+    return sum(map(scatter_within, sums)) / sum(part["particles"] for part in sums)
 
 
 def predict(tables, times, at, start=0.0):
     """Mean [kg] and coefficients of variation of the coating at the times `at`, and what they are made of. `tables` are the
     rows of each time; sprayed from `start` on."""
-    groups = tables[-1]
+    groups, first = tables[-1], tables[0]
     time = groups[0]["time"]
     if not (time > start and min(at) > start):
         sys.exit(f"the spray begins at {start:g} s: later times are needed")
-    every = moments(add(groups), time, time - start)
+    if first[0]["time"] > start:
+        first = [dict(row, coating=0.0, coating_squared=0.0) for row in groups]
+    there, then = add(groups)["particles"], add(first)["particles"]
+    if abs(there - then) > 0.01 * then:
+        sys.exit(f"the particles are not the same throughout: {then:g} at the start, {there:g} at the end; allowed: a "
+                 "change of 1 %")
+    every = moments(add(groups), add(first), time, time - start)
     if every is None:
         sys.exit("fewer than two cycles have ended, or nothing is coated yet: a longer run is needed")
     spread, open_share = cycle_variance(times, every["steady"])
@@ -170,31 +190,31 @@ def predict(tables, times, at, start=0.0):
     # Correlation as of the ended cycles, with the variance that the long ones have too.
     widening = spread / every["time_variance"] if every["time_variance"] > 0 else 1.0
 
-    def figures(rows, earlier):
-        m = moments(add(rows), time, time - start)
+    def figures(rows, earlier, before):
+        m = moments(add(rows), add(before), time, time - start)
         if m is None:
             return None
         r = m["rate"]
         one = (m["gain_variance"] + r * r * widening * m["time_variance"]
                - 2 * r * math.sqrt(widening) * m["covariance"])
-        classes = variation_of_classes(rows)
-        now = variance_within_classes(rows)
+        now, initially = variance_within_classes(rows), variance_within_classes(before)
         slope = max(0.0, now - variance_within_classes(earlier)) / interval if interval > 0 else math.nan
         result = []
         for t in (when - start for when in at):
-            own = max(0.0, one) * t / m["steady"]
+            mean = m["initial"] + r * t
+            own = initially + max(0.0, one) * t / m["steady"]
             grown = max(0.0, now + slope * (t - (time - start)))
-            of_classes = (classes * r * t) ** 2
-            result.append((r * t, math.sqrt(own + of_classes) / (r * t), math.sqrt(grown + of_classes) / (r * t)))
+            of_classes = variance_of_classes(rows, before, t / (time - start))
+            result.append((mean, math.sqrt(own + of_classes) / mean, math.sqrt(grown + of_classes) / mean))
         return result
 
-    whole = figures(groups, middle)
+    whole = figures(groups, middle, first)
     names = sorted({row["group"] for row in groups})
 
     def others(rows, name):
         return [row for row in rows if row["group"] != name]
 
-    without = [figures(others(groups, name), others(middle, name)) for name in names]
+    without = [figures(others(groups, name), others(middle, name), others(first, name)) for name in names]
     without = [part for part in without if part is not None]
     predictions = []
     for n, t in enumerate(at):
@@ -208,7 +228,9 @@ def predict(tables, times, at, start=0.0):
                             "coating_cov_growth": whole[n][2], "coating_cov_growth_error": errors[2]})
     basis = {"measured_time": time, "spray_start": start, "mean_cycle_time": every["steady"], "sd_cycle_time": math.sqrt(spread),
              "cycles_beyond_distribution": open_share, "mean_gain": every["rate"] * every["steady"],
-             "sd_gain": math.sqrt(every["gain_variance"]), "variation_of_size_classes": variation_of_classes(groups)}
+             "sd_gain": math.sqrt(every["gain_variance"]), "initial_coating": every["initial"],
+             "variation_of_size_classes":
+                 math.sqrt(variance_of_classes(groups, first, 1.0)) / (every["initial"] + every["rate"] * (time - start))}
     return basis, predictions
 
 
@@ -224,8 +246,12 @@ def main():
     for path in (groups_file, times_file):
         if not path.is_file():
             sys.exit(f"{path}: not there; allowed: the results of a run whose case has the zone {arguments.zone}")
-    basis, predictions = predict(read_times(groups_file), read_times(times_file)[-1], arguments.time,
-                                 read_spray_start(arguments.results / "case.yaml"))
+    tables = read_times(groups_file)
+    start, end = read_spray_times(arguments.results / "case.yaml")
+    if end < tables[-1][0]["time"]:
+        sys.exit(f"a nozzle closes at {end:g} s, before the end of what was measured: the rate would be too low; allowed: a "
+                 "run of which the spray does not end")
+    basis, predictions = predict(tables, read_times(times_file)[-1], arguments.time, start)
     print(f"measured over {basis['measured_time']:g} s, sprayed from {basis['spray_start']:g} s: "
           f"cycle time {basis['mean_cycle_time']:.4g} s (standard deviation {basis['sd_cycle_time']:.4g} s), gain {basis['mean_gain']:.4g} kg a cycle "
           f"(standard deviation {basis['sd_gain']:.4g} kg)")
