@@ -107,6 +107,10 @@ class Engine {
   /// Between two outer steps: gives every particle a mass [kg], in their present order. Velocities stay.
   void set_masses(const DeviceArray<Real>& mass);
 
+  /// The same with radii [m], which do not get smaller. Centres stay, so contacts press by what the radii grow. Throws
+  /// RunError where a periodic domain gets too narrow for them.
+  void set_sizes(const DeviceArray<Real>& mass, const DeviceArray<Real>& radius);
+
   /// Before the substeps of an outer step: removes particles that left through open sides (counted), stops the run if
   /// one is where it cannot be, and re-sorts memory in space now and then. May reorder the particle arrays.
   void prepare_outer_step();
@@ -194,6 +198,7 @@ class Engine {
   void sort_memory();
   void reorder(const DeviceArray<std::int32_t>& order, Index count);
   void remove_left();
+  void book_growth(const Vec3& momentum_before);
   void take_stock(const std::vector<ParticleSeed>& seeds);
   Real mass_of(const ParticleSeed& seed) const;
   /// Writes seeds to the arrays from entry `first` on, with the next ids.

@@ -124,14 +124,19 @@ NeighbourSearch::NeighbourSearch(const Domain& domain, const SkinOptions& skin, 
     : skin_(skin), smallest_radius_(smallest_radius), largest_radius_(largest_radius) {
   grid_.domain = domain;
   grid_.beyond = skin_.reach;
-  const Real reach = 2 * (largest_radius_ * (1 + skin_.largest_fraction) + skin_.reach);
+  require_room(largest_radius_);
+  set_levels(grid_, smallest_radius_, largest_radius_);
+}
+
+void NeighbourSearch::require_room(Real largest_radius) const {
+  const Domain& domain = grid_.domain;
+  const Real reach = 2 * (largest_radius + largest_radius_ * skin_.largest_fraction + skin_.reach);
   for (int axis = 0; axis < 3; ++axis) {
     if (domain.periodic[axis] != 0 && domain.length()[axis] < 2 * reach) {
       throw std::invalid_argument("a periodic domain must be at least " + std::to_string(2 * reach) +
                                   " m wide for these particles, so that none meets two images of another");
     }
   }
-  set_levels(grid_, smallest_radius_, largest_radius_);
 }
 
 void NeighbourSearch::find_order(const Particles& particles, Real time_step, NeighbourList& list) {

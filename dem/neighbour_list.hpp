@@ -59,6 +59,10 @@ class NeighbourSearch {
 
   /// Brings particles back into the domain and finds their canonical order, by cell, then by id; spoils the list.
   void find_order(const Particles& particles, Real time_step, NeighbourList& list);
+  /// Throws where a periodic axis is too short for particles of this radius [m], whatever they were at first:
+  /// std::invalid_argument.
+  void require_room(Real largest_radius) const;
+
   /// From the next build on.
   void set_smallest_fraction(Real fraction) { skin_.smallest_fraction = fraction; }
 

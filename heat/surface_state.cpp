@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "heat/film_laws.hpp"
+
 namespace pellicle::heat {
 namespace {
 
@@ -51,10 +53,32 @@ struct AddFilms {
   }
 };
 
+struct AddCoatings {
+  DeviceArray<Real> bare;
+  DeviceArray<Film> film;
+  Real solids_density;
+  DeviceArray<Real> whole;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
+    whole(p) = bare(p) + coating_thickness(bare(p), film(p).solids, solids_density);
+  }
+};
+
+struct NoteRadii {
+  DeviceArray<dem::PositionRadius> place;
+  DeviceArray<Real> radius;
+  KOKKOS_INLINE_FUNCTION void operator()(const Index p) const { radius(p) = place(p).radius; }
+};
+
+void note_radii(const dem::Particles& particles, Index first, Index last, const DeviceArray<Real>& radius) {
+  Kokkos::parallel_for("heat::surface_state::note_radii", DeviceRange(first, last),
+                       NoteRadii{particles.position_radius, radius});
+}
+
 }  // namespace
 
 SurfaceState::SurfaceState(const dem::Particles& particles, const std::vector<Real>& heat_capacity,
-                           const HeatCapacities& capacities, Real initial_temperature, FilmGrowth growth)
+                           const HeatCapacities& capacities, Real initial_temperature, FilmGrowth growth,
+                           Real solids_density)
     : particles_(particles),
       heat_capacity_("heat::surface_state::heat_capacity", heat_capacity.size()),
       capacities_(capacities),
@@ -62,6 +86,8 @@ SurfaceState::SurfaceState(const dem::Particles& particles, const std::vector<Re
       film_("heat::surface_state::film", "heat/film"),
       growth_(growth),
       bare_mass_("heat::surface_state::bare_mass", "heat/bare_mass"),
+      bare_radius_("heat::surface_state::bare_radius", "heat/bare_radius"),
+      solids_density_(solids_density),
       newcomer_{initial_temperature, {}} {
   const auto host = Kokkos::create_mirror_view(heat_capacity_);
   std::copy(heat_capacity.begin(), heat_capacity.end(), host.data());
@@ -85,23 +111,32 @@ void SurfaceState::set_by_id(const std::vector<Real>& temperature, const std::ve
   Kokkos::deep_copy(device_film, host_film);
 }
 
-void SurfaceState::note_bare_masses() {
+void SurfaceState::note_bare_particles() {
   if (growth_ == FilmGrowth::none || particles_.count == 0) return;
   const std::pair<Index, Index> range(0, particles_.count);
   Kokkos::deep_copy(Kokkos::subview(bare_mass_.values(), range), Kokkos::subview(particles_.mass, range));
+  if (radius_grows()) note_radii(particles_, 0, particles_.count, bare_radius_.values());
 }
 
 void SurfaceState::grow(dem::Engine& engine) {
   const Index count = particles_.count;
   if (growth_ == FilmGrowth::none || count == 0) return;
-  if (whole_mass_.extent(0) < static_cast<std::size_t>(count)) {
-    whole_mass_ =
-        DeviceArray<Real>(Kokkos::view_alloc("heat::surface_state::whole_mass", Kokkos::WithoutInitializing),
-                          static_cast<std::size_t>(count + count / 4));
-  }
+  const auto make_room = [count](DeviceArray<Real>& array, const char* label) {
+    if (array.extent(0) >= static_cast<std::size_t>(count)) return;
+    array = DeviceArray<Real>(Kokkos::view_alloc(std::string(label), Kokkos::WithoutInitializing),
+                              static_cast<std::size_t>(count + count / 4));
+  };
+  make_room(whole_mass_, "heat::surface_state::whole_mass");
   Kokkos::parallel_for("heat::surface_state::add_films", DeviceRange(0, count),
                        AddFilms{bare_mass_.values(), film(), whole_mass_});
-  engine.set_masses(whole_mass_);
+  if (!radius_grows()) {
+    engine.set_masses(whole_mass_);
+    return;
+  }
+  make_room(whole_radius_, "heat::surface_state::whole_radius");
+  Kokkos::parallel_for("heat::surface_state::add_coatings", DeviceRange(0, count),
+                       AddCoatings{bare_radius_.values(), film(), solids_density_, whole_radius_});
+  engine.set_sizes(whole_mass_, whole_radius_);
 }
 
 SurfaceTotals SurfaceState::sum(Index first, Index last, const DeviceArray<std::int32_t>& order) const {
@@ -125,6 +160,7 @@ void SurfaceState::reset(Index count) {
   temperature_.reset(count);
   film_.reset(count);
   if (growth_ != FilmGrowth::none) bare_mass_.reset(count);
+  if (radius_grows()) bare_radius_.reset(count);
   left_ = entered_ = {};
 }
 
@@ -135,6 +171,10 @@ void SurfaceState::add(Index first, Index count) {
     bare_mass_.add(first, count);
     const std::pair<Index, Index> range(first, first + count);
     Kokkos::deep_copy(Kokkos::subview(bare_mass_.values(), range), Kokkos::subview(particles_.mass, range));
+  }
+  if (radius_grows()) {
+    bare_radius_.add(first, count);
+    note_radii(particles_, first, first + count, bare_radius_.values());
   }
   Kokkos::parallel_for("heat::surface_state::begin", DeviceRange(first, first + count),
                        Begin{newcomer_, particles_.mass, temperature(), film()});
@@ -147,12 +187,14 @@ void SurfaceState::reorder(const DeviceArray<std::int32_t>& order, Index before,
   temperature_.reorder(order, before, count, scratch);
   film_.reorder(order, before, count, scratch);
   if (growth_ != FilmGrowth::none) bare_mass_.reorder(order, before, count, scratch);
+  if (radius_grows()) bare_radius_.reorder(order, before, count, scratch);
 }
 
 void SurfaceState::save(core::CheckpointWriter& file, Index count) const {
   temperature_.save(file, count);
   film_.save(file, count);
   if (growth_ != FilmGrowth::none) bare_mass_.save(file, count);
+  if (radius_grows()) bare_radius_.save(file, count);
   for (const auto& [name, totals] : {std::pair("left", left_), std::pair("entered", entered_)}) {
     const std::string path = std::string("heat/") + name;
     file.write(path + "_liquid", totals.film.liquid);
@@ -165,6 +207,7 @@ void SurfaceState::load(const core::CheckpointReader& file, Index count) {
   temperature_.load(file, count);
   film_.load(file, count);
   if (growth_ != FilmGrowth::none) bare_mass_.load(file, count);
+  if (radius_grows()) bare_radius_.load(file, count);
   for (const auto& [name, totals] : {std::pair("left", &left_), std::pair("entered", &entered_)}) {
     const std::string path = std::string("heat/") + name;
     totals->film.liquid = file.read_double(path + "_liquid");

@@ -53,10 +53,11 @@ struct Newcomer {
 /// Temperature and film of all particles; follows them through memory (dem::Engine::attach).
 class SurfaceState final : public dem::Companion {
  public:
-  /// `particles` is that of the engine it is attached to; `heat_capacity` of each material [J/kg/K].
+  /// `particles` is that of the engine it is attached to; `heat_capacity` of each material [J/kg/K]; `solids_density` of the
+  /// dry coating [kg/m3] is needed where it counts in the radius.
   SurfaceState(const dem::Particles& particles, const std::vector<Real>& heat_capacity,
                const HeatCapacities& capacities, Real initial_temperature,
-               FilmGrowth growth = FilmGrowth::none);
+               FilmGrowth growth = FilmGrowth::none, Real solids_density = 0);
 
   const DeviceArray<Real>& temperature() const { return temperature_.values(); }  ///< [K]
   const DeviceArray<Film>& film() const { return film_.values(); }                ///< [kg]
@@ -66,14 +67,15 @@ class SurfaceState final : public dem::Companion {
   /// Temperature [K] and film [kg] of every particle by its id; to be called after the particles were set.
   void set_by_id(const std::vector<Real>& temperature, const std::vector<Film>& film);
 
-  /// Takes the masses that particles have now for those without films; to be called after the particles were set.
-  void note_bare_masses();
+  /// Takes the masses and radii that particles have now for those without films; to be called after the particles were set.
+  void note_bare_particles();
   /// The particles with the masses that they have without films, which are what enthalpies count.
   dem::Particles bare(dem::Particles particles) const {
     if (growth_ != FilmGrowth::none) particles.mass = bare_mass_.values();
     return particles;
   }
-  /// With FilmGrowth::mass: gives the engine's particles the mass of their films too.
+  /// Unless growth is none: gives the engine's particles the mass of their films too, and with mass_and_radius the coating's
+  /// thickness.
   void grow(dem::Engine& engine);
 
   /// What particles that are added from here on begin with; until the first call, the initial temperature and no film.
@@ -91,10 +93,12 @@ class SurfaceState final : public dem::Companion {
   void save(core::CheckpointWriter& file, Index count) const override;
   void load(const core::CheckpointReader& file, Index count) override;
   std::size_t bytes() const override {
-    return temperature_.bytes() + film_.bytes() + (growth_ != FilmGrowth::none ? bare_mass_.bytes() : 0);
+    return temperature_.bytes() + film_.bytes() + (growth_ != FilmGrowth::none ? bare_mass_.bytes() : 0) +
+           (radius_grows() ? bare_radius_.bytes() : 0);
   }
 
  private:
+  bool radius_grows() const { return growth_ == FilmGrowth::mass_and_radius; }
   /// Over entries first to last - 1, or those that `order` names there unless it is empty.
   SurfaceTotals sum(Index first, Index last, const DeviceArray<std::int32_t>& order = {}) const;
 
@@ -104,8 +108,10 @@ class SurfaceState final : public dem::Companion {
   dem::FollowingArray<Real> temperature_;
   dem::FollowingArray<Film> film_;
   FilmGrowth growth_;
-  dem::FollowingArray<Real> bare_mass_;  // in use if films add to it
-  DeviceArray<Real> whole_mass_;         // likewise, free between uses
+  dem::FollowingArray<Real> bare_mass_;          // in use if films add to it
+  dem::FollowingArray<Real> bare_radius_;        // in use if they add to it
+  DeviceArray<Real> whole_mass_, whole_radius_;  // likewise, free between uses
+  Real solids_density_;
   Newcomer newcomer_;
   SurfaceTotals left_, entered_;
 };

@@ -71,11 +71,7 @@ struct MoveParcel {
         booked = true;
         const Vec3 arriving = parcel.velocity;
         bounce(touch, path, parcel, after);
-        if (m.gas.gains.is_on()) {
-          parcel.velocity =
-              arriving +
-              (1 / drag.mass) * m.gas.gains.book_bounce(drag.cell, drag.mass * (parcel.velocity - arriving));
-        }
+        book_bounce(parcel, nozzle, i, drag.cell, touch.particle, arriving);
         if (after.fate == ParcelFate::flying) {
           evaporate(i, parcel, nozzle, drag, dt, after);
           m.parcels.state(i) = parcel;
@@ -180,6 +176,18 @@ struct MoveParcel {
     const Vec3 impulse = m.gas.gains.take_impulse(drag.cell, mass * (step.velocity - drag.velocity - fallen));
     parcel.velocity = drag.velocity + fallen + (1 / mass) * impulse;
     m.gas.gains.book_flight(drag.cell, mass, time, -Kokkos::expm1(-drag.rate * time));
+  }
+
+  /// Books the impulse of a bounce in whole units: the droplet has it, and the particle the opposite if droplets push
+  /// particles.
+  KOKKOS_INLINE_FUNCTION void book_bounce(ParcelState& parcel, const NozzleView& nozzle, Index i, Index cell,
+                                          Index particle, const Vec3& arriving) const {
+    if (!m.gas.gains.is_on() && !m.pushes.is_on()) return;
+    const Real mass = mass_of(m.parcels, i, nozzle, m.units);
+    Vec3 impulse = mass * (parcel.velocity - arriving);
+    if (m.gas.gains.is_on()) impulse = m.gas.gains.book_bounce(cell, impulse);
+    if (m.pushes.is_on()) impulse = -m.pushes.push(particle, -impulse);
+    parcel.velocity = arriving + (1 / mass) * impulse;
   }
 
   KOKKOS_INLINE_FUNCTION Vec3 velocity_of(Index p) const {

@@ -9,6 +9,7 @@
 #include "spray/parcel_gas.hpp"
 #include "spray/parcel_motion_laws.hpp"
 #include "spray/parcels.hpp"
+#include "spray/particle_push.hpp"
 #include "spray/wall_crossing.hpp"
 
 namespace pellicle::spray {
@@ -28,6 +29,7 @@ struct ParcelMove {
   DeviceArray<NozzleView> nozzle;
   DeviceArray<std::int64_t> dried;  ///< parcels that ran dry, by nozzle; empty unless they evaporate
   WholeUnits units;
+  ParticlePushes pushes;  ///< empty unless droplets push particles
   ParcelGas gas;
   ParcelTargets targets;
   MovingWalls walls;

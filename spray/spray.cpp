@@ -42,6 +42,7 @@ struct PartParcels {
   DeviceArray<EndedWater> ended_water;
   DeviceArray<NozzleView> nozzle;
   WholeUnits units;
+  ParticlePushes pushes;
   DeviceArray<dem::VelocitySpin> velocity_spin;
   ParcelGas gas;
   Real time;  ///< at which the outer step began [s]
@@ -87,6 +88,10 @@ struct PartParcels {
     hit.time = time + end.time;
     hit.film = content_of(from, i, nozzle(name.nozzle), units);
     if (from.evaporate) hit.enthalpy = units.heat * static_cast<Real>(from.water(i).enthalpy);
+    if (pushes.is_on()) {
+      const Real mass = mass_of(from, i, nozzle(name.nozzle), units);
+      pushes.capture(end.particle, mass * parcel.velocity, mass);
+    }
     return hit;
   }
 };
@@ -193,6 +198,7 @@ void Spray::inject(Real time, int substeps, const dem::Engine& engine) {
   time_ = time;
   substeps_ = substeps;
   const Real substep = engine.setup().time_step;
+  half_step_ = 0.5 * substep;
   const Real end = time + substeps * substep;
   std::int64_t wanted = parcels_.count;
   for (const Injector& injector : injectors_)
@@ -201,6 +207,7 @@ void Spray::inject(Real time, int substeps, const dem::Engine& engine) {
   const Index before = parcels_.count;
   for (Injector& injector : injectors_) injector.add(time, end, parcels_, units_);
   if (parcels_.count == 0) return;
+  make_pushes(engine.particles().count);
   if (options_.watch_momentum) {
     const Vec3 born = sum_momentum(before)[static_cast<std::size_t>(ParcelFate::flying)];
     for (int axis = 0; axis < 3; ++axis) momentum_[static_cast<std::size_t>(axis)].add(born[axis]);
@@ -231,6 +238,7 @@ bool Spray::move(int k, const dem::Engine& engine, const ParcelGas& gas) {
   move.nozzle = nozzle_;
   move.dried = dried_;
   move.units = units_;
+  move.pushes = pushes_;
   move.gas = gas;
   if (const dem::NeighbourSearch* search = engine.search(); search != nullptr) {
     move.targets = {engine.particles(), search->grid(), search->cell_start(), search->order(),
@@ -269,8 +277,12 @@ ParcelMomentum Spray::momentum() const {
   const auto vector = [&](std::size_t first) {
     return Vec3{momentum_[first].value(), momentum_[first + 1].value(), momentum_[first + 2].value()};
   };
-  return {vector(0), vector(3), vector(6), vector(9),
-          sum_momentum(0)[static_cast<std::size_t>(ParcelFate::flying)]};
+  return {vector(0),
+          vector(3),
+          vector(6),
+          vector(9),
+          sum_momentum(0)[static_cast<std::size_t>(ParcelFate::flying)],
+          {pushed_[0].value(), pushed_[1].value(), pushed_[2].value()}};
 }
 
 void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& surface, const ParcelGas& gas,
@@ -291,12 +303,13 @@ void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& s
   std::int64_t ranks = 0;
   Kokkos::parallel_scan("spray::spray::part_parcels", DeviceRange(0, parcels_.count),
                         PartParcels{parcels_, aside_, hits_.hits(), ended_, ended_water_, nozzle_, units_,
-                                    particles.velocity_spin, gas, time_},
+                                    pushes_, particles.velocity_spin, gas, time_},
                         ranks);
   std::swap(parcels_, aside_);
   parcels_.count = static_cast<Index>(ranks & (captured_unit - 1));
   aside_.count = 0;
   if (options_.heat.on) count_ended_water();
+  if (pushes_.is_on()) push(particles);
   if (captured == 0) return;
   hits_.sort(captured);
   HitTargets targets{surface.bare(particles), surface.film(),       records_.values(), {},
@@ -309,6 +322,19 @@ void Spray::collect(const dem::Particles& particles, const heat::SurfaceState& s
   const HitHeat heat = sum_heat(hits_.hits(), captured, heat_scratch_);
   enthalpy_.add(heat.enthalpy);
   free_heat_.add(heat.free_heat);
+}
+
+void Spray::make_pushes(Index particles) {
+  if (!options_.push_particles || pushes_.of.extent(0) >= static_cast<std::size_t>(particles)) return;
+  // All is 0 between two outer steps: nothing is to be kept.
+  pushes_ = {
+      DeviceArray<ParticlePush>("spray::spray::pushes", static_cast<std::size_t>(particles + particles / 4)),
+      units_};
+}
+
+void Spray::push(const dem::Particles& particles) {
+  const Vec3 given = push_particles(particles, pushes_, half_step_, push_scratch_);
+  for (int axis = 0; axis < 3; ++axis) pushed_[static_cast<std::size_t>(axis)].add(given[axis]);
 }
 
 void Spray::count_ended_water() {
@@ -423,6 +449,7 @@ void Spray::save(core::CheckpointWriter& file) const {
   std::vector<double> momentum;
   for (const core::ExactSum& sum : momentum_)
     momentum.insert(momentum.end(), {sum.parts()[0], sum.parts()[1]});
+  for (const core::ExactSum& sum : pushed_) momentum.insert(momentum.end(), {sum.parts()[0], sum.parts()[1]});
   file.write("spray/momentum", momentum);
   file.write("spray/heat", std::vector<double>{enthalpy[0], enthalpy[1], free_heat[0], free_heat[1]});
 }
@@ -450,10 +477,14 @@ void Spray::load(const core::CheckpointReader& file) {
     file.read_into("spray/dried", dried);
     Kokkos::deep_copy(dried_, dried);
   }
-  std::vector<double> momentum(2 * momentum_.size());
+  std::vector<double> momentum(2 * (momentum_.size() + pushed_.size()));
   file.read_into("spray/momentum", momentum);
   for (std::size_t i = 0; i < momentum_.size(); ++i)
     momentum_[i].set_parts(momentum[2 * i], momentum[2 * i + 1]);
+  for (std::size_t i = 0; i < pushed_.size(); ++i) {
+    const std::size_t at = 2 * (momentum_.size() + i);
+    pushed_[i].set_parts(momentum[at], momentum[at + 1]);
+  }
   std::vector<double> heat(4);
   file.read_into("spray/heat", heat);
   enthalpy_.set_parts(heat[0], heat[1]);

@@ -26,6 +26,7 @@ struct SprayOptions {
       0;  ///< how often parcels move [s]; 0: as seldom as their path stays below a particle's radius
   std::uint64_t seed = 1;
   bool watch_momentum = false;  ///< what parcels bring along and take away is added up
+  bool push_particles = false;  ///< particles get the momentum of droplets that they capture or throw back
   DropletHeat heat{};           ///< whether droplets evaporate in flight, and by what
   Real solids_density = 0;      ///< of what they leave behind [kg/m3]; of use with `heat` on
 };
@@ -56,6 +57,9 @@ struct SprayHeat {
 struct ParcelMomentum {
   Vec3 injected, captured, wall_loss, overspray;
   Vec3 in_flight;  ///< now
+  /// That moving particles got, of droplets that they captured or threw back. The films' own is not in it: it comes with
+  /// their mass.
+  Vec3 to_particles;
 };
 
 /// Of parcels that ended alike, in whole units.
@@ -116,6 +120,8 @@ class Spray {
   MovingWalls walls_during(const dem::Engine& engine, int substeps) const;
 
   void count_ended_water();
+  void make_pushes(Index particles);
+  void push(const dem::Particles& particles);
   /// Sums over the parcels in flight, by nozzle.
   std::vector<FlyingWater> sum_flying() const;
 
@@ -136,9 +142,13 @@ class Spray {
   Real time_ = 0;
   int substeps_ = 0;
   int stride_ = 1;
+  Real half_step_ = 0;  // of a particle [s]
   Real largest_speed_ = 0;
 
   core::ExactSum enthalpy_, free_heat_;
+  ParticlePushes pushes_;  // of the present outer step
+  DeviceArray<Vec3> push_scratch_;
+  std::array<core::ExactSum, 3> pushed_;
   mutable DeviceArray<Vec3> momentum_scratch_;
   std::array<core::ExactSum, 3 * static_cast<std::size_t>(fate_count)> momentum_;  // injected, then by fate
   // Where droplets evaporate: of parcels that ended in an outer step, and since the start, by nozzle and fate.

@@ -33,14 +33,16 @@ struct Rig {
   std::int64_t steps = 0;
 
   Rig(const dem::EngineSetup& setup, const std::vector<dem::ParticleSeed>& seeds,
-      const spray::SprayOptions& options, int substeps_in = 10)
+      const spray::SprayOptions& options, int substeps_in = 10,
+      heat::FilmGrowth growth = heat::FilmGrowth::none)
       : engine(setup),
-        surface(engine.particles(), std::vector<Real>(setup.materials.size(), 840), {}, 300),
+        surface(engine.particles(), std::vector<Real>(setup.materials.size(), 840), {}, 300, growth, 1250),
         spray(options, setup.walls),
         substeps(substeps_in) {
     engine.attach(surface);
     engine.attach(spray.hit_records());
     engine.set_particles(seeds);
+    surface.note_bare_particles();
   }
 
   Real time() const { return static_cast<Real>(steps) * substeps * engine.setup().time_step; }
@@ -54,6 +56,7 @@ struct Rig {
         droplets->settle();
     });
     spray.collect(engine.particles(), surface, droplets != nullptr ? droplets->gas() : gas, gas_temperature);
+    surface.grow(engine);
     if (droplets != nullptr) droplets->close(substeps * engine.setup().time_step);
     ++steps;
   }

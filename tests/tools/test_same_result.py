@@ -103,8 +103,8 @@ spray:
 droplets: {momentum: two_way}
 """
 
-# The same with droplets that evaporate on their way.
-EVAPORATING = SPRAYED.replace("momentum: two_way", "momentum: two_way, evaporation: true").replace("small sprayed", "small evaporating")
+# The same with droplets that evaporate on their way and particles that their coating makes larger.
+EVAPORATING = SPRAYED.replace("momentum: two_way", "momentum: two_way, evaporation: true").replace("heat: {}\n", "heat: {}\ncoating: {growth: mass_and_radius}\n").replace("small sprayed", "small evaporating")
 
 # Counts of work done are no state of the bed.
 IGNORED = {"case"}
@@ -179,7 +179,7 @@ def is_reproducible(name, text, needed):
 def main():
     good = is_reproducible("bed", CASE, {"dem/position_radius": 100, "output/average/velocity/squares": 200, "output/lines/rise/moments": 10, "probes/load/average/columns": 10})
     good &= is_reproducible("sprayed bed", SPRAYED, {"spray/state": 100, "spray/hit_record": 100, "heat/film": 100, "wetness/all": 5})
-    good &= is_reproducible("evaporating spray", EVAPORATING, {"spray/water": 100, "heat/film": 100})
+    good &= is_reproducible("evaporating spray", EVAPORATING, {"spray/water": 100, "heat/film": 100, "heat/bare_radius": 100})
     good &= is_reproducible("block", BLOCK, {"dem/history/spring": 100, "dem/wall_history/spring": 100})
     sys.exit(0 if good else 1)
 

@@ -4,7 +4,9 @@
 A small bed in a box with a tube, sprayed from below and from above, with drying. At each stop the five masses of each
 nozzle must balance, and the books of water, solids and energy must close to the bars of the design.
 """
+import csv
 import json
+import math
 import os
 import subprocess
 import tempfile
@@ -148,6 +150,56 @@ output:
                 nozzle = spray["nozzles"][name]
                 self.assertGreater(nozzle["evaporated"], 1e-4 * nozzle["injected"], name)
                 self.assertLess(nozzle["evaporated"], 0.5 * nozzle["injected"], name)
+
+    def test_coated_particles_grow(self):
+        """Radius from solids by hand; the books close with particles that grow and that droplets push, at every stop."""
+        beads = range(0, 200, 4)
+        quantities = "[particle_diameter, film_solids, film_liquid, coating_thickness, particle_mass]"
+        text = (CASE + "  probes:\n    - {name: coat, coating: {}, every: 2 ms, quantities: [coating_thickness_mean]}\n"
+                + "".join(f"    - {{name: p{i}, particle: {i}, every: 2 ms, quantities: {quantities}}}\n" for i in beads)
+                + "droplets: {momentum: two_way}\ncoating: {growth: GROWTH, solids_density: 1300}\n")
+        thickness = {}
+        for growth in ("none", "mass_and_radius"):
+            with tempfile.TemporaryDirectory() as place:
+                place = Path(place)
+                (place / "case.yaml").write_text(text.replace("GROWTH", growth), encoding="utf-8")
+                for until in (["--until", "3 ms"], ["--resume", "--until", "8 ms"]):
+                    summary = self.run_case(place, *until)
+                    self.check(summary)
+                    self.assertLess(summary["defects"]["momentum"], 2e-6)
+                columns = {}
+                for path in (place / "results/probes").glob("*.csv"):
+                    with open(path, encoding="utf-8") as file:
+                        columns[path.stem] = [[float(x) for x in row] for row in list(csv.reader(file))[1:]]
+            thickness[growth] = [row[1] for row in columns.pop("coat")]
+            coated = 0
+            for _, diameter, solids, liquid, coating, mass in (row for rows in columns.values() for row in rows):
+                if growth == "none":
+                    self.assertEqual(diameter, 0.003)
+                    continue
+                grown = (1.5e-3**3 + 3 * solids / (4 * math.pi * 1300)) ** (1 / 3)
+                whole = 2505 * 4 / 3 * math.pi * 1.5e-3**3 + solids + liquid
+                # Printed with nine digits; those coated have some 1e-8 m.
+                self.assertAlmostEqual(diameter, 2 * grown, delta=6e-12)
+                self.assertAlmostEqual(coating, grown - 1.5e-3, delta=1e-13)
+                self.assertAlmostEqual(mass, whole, delta=2e-9 * whole)
+                coated += solids > 0
+        self.assertGreater(coated, 10)
+        # The same coating by either way of reckoning: particles that grow move a little differently.
+        for a, b in zip(thickness["none"], thickness["mass_and_radius"]):
+            self.assertAlmostEqual(a, b, delta=0.02 * thickness["none"][-1])
+
+    def test_growth_that_cannot_be_is_refused(self):
+        text = (CASE + "  zones: [{name: z, box: {min: [0, 0, 0], max: [0.01, 0.01, 0.01]}, size_classes: 3}]\n"
+                "coating: {growth: mass_and_radius}\n").replace('diameter: "3 mm", fill', 'diameter: "3 mm", initial_solids: 0.01, fill')
+        with tempfile.TemporaryDirectory() as place:
+            place = Path(place)
+            (place / "case.yaml").write_text(text, encoding="utf-8")
+            run = subprocess.run([PROGRAM, "check", str(place / "case.yaml")], capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        for says in ("particles.0.initial_solids: with coating.growth mass_and_radius",
+                     "zones.z.size_classes: with coating.growth mass_and_radius"):
+            self.assertIn(says, run.stdout + run.stderr)
 
     def test_without_gas_too(self):
         text = CASE[:CASE.index("gas:\n")] + CASE[CASE.index("spray:\n"):]

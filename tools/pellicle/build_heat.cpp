@@ -65,10 +65,11 @@ heat::SurfaceState make_surface(const CaseSpec& spec, const dem::Particles& part
   film.solids = spec.coating.solids_heat_capacity;
   // With films alone temperatures are of no use.
   const heat::FilmGrowth growth = spec.coating.growth;
-  if (!spec.heat) return {particles, capacities, film, film.reference_temperature, growth};
+  const Real solids = spec.coating.solids_density;
+  if (!spec.heat) return {particles, capacities, film, film.reference_temperature, growth, solids};
   const GasHeatSpec& gas = *spec.gas->heat;
   film.reference_temperature = gas.reference_temperature.value_or(gas.initial_temperature);
-  return {particles, capacities, film, *spec.heat->initial_temperature, growth};
+  return {particles, capacities, film, *spec.heat->initial_temperature, growth, solids};
 }
 
 Real initial_temperature(const CaseSpec& spec, const PopulationSpec& population) {

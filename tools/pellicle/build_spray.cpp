@@ -66,7 +66,7 @@ spray::SprayOptions make_spray_options(const CaseSpec& spec) {
   options.gravity = spec.gravity;
   options.parcel_step = spec.time.parcel_step.value_or(0);
   options.seed = spec.seed;
-  options.watch_momentum = spec.droplets.two_way;
+  options.watch_momentum = options.push_particles = spec.droplets.two_way;
   options.heat = make_droplet_heat(spec);
   options.solids_density = spec.coating.solids_density;
   return options;

@@ -62,6 +62,22 @@ void check_droplets(const CaseSpec& spec, core::InputProblems& problems) {
   }
 }
 
+/// What a radius that grows does not go with.
+void check_growing_radius(const CaseSpec& spec, core::InputProblems& problems) {
+  if (spec.coating.growth != heat::FilmGrowth::mass_and_radius) return;
+  for (std::size_t i = 0; i < spec.particles.size(); ++i) {
+    if (!(spec.particles[i].initial_solids.value_or(0) > 0)) continue;
+    problems.add(spec.where(fmt::format("particles.{}.initial_solids", i)),
+                 "with coating.growth mass_and_radius they would make the particle larger than its diameter "
+                 "at once; 0");
+  }
+  for (const ZoneSpec& zone : spec.output.zones) {
+    if (zone.size_classes == 1) continue;
+    problems.add(spec.where(zone.where.substr(zone.where.rfind(": ") + 2) + ".size_classes"),
+                 "with coating.growth mass_and_radius particles would change their class; 1");
+  }
+}
+
 }  // namespace
 
 void check_heat(const CaseSpec& spec, core::InputProblems& problems) {
@@ -71,6 +87,7 @@ void check_heat(const CaseSpec& spec, core::InputProblems& problems) {
                  "there are no films without heat or spray; none, or with one of them");
   }
   check_droplets(spec, problems);
+  check_growing_radius(spec, problems);
   if (!spec.heat) {
     for (std::size_t i = 0; i < spec.particles.size(); ++i) {
       for (const char* key : {"initial_temperature", "initial_liquid", "initial_solids"}) {

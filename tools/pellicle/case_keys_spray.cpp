@@ -117,9 +117,11 @@ void describe_nozzle(Keys& keys, NozzleSpec& nozzle) {
 void describe_droplets(Keys& keys, DropletSpec& droplets) {
   static constexpr core::ModelInfo momenta[] = {
       {"one_way", "the gas drags droplets and does not feel them"},
-      {"two_way", "the gas gets the opposite of what droplets get"}};
+      {"two_way",
+       "the gas gets the opposite of what droplets get, particles the impulse of those that they capture or "
+       "throw back"}};
   std::optional<int> momentum = droplets.two_way ? 1 : 0;
-  keys.choice({"momentum", "whether droplets push the gas"}, momenta, momentum);
+  keys.choice({"momentum", "whether droplets push the gas and the particles"}, momenta, momentum);
   droplets.two_way = *momentum == 1;
   keys.flag({"evaporation",
              "droplets keep the temperature that they leave with, and exchange heat and vapour with the "

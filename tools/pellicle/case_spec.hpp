@@ -338,7 +338,7 @@ struct NozzleSpec {
 
 /// What droplets do in flight besides flying.
 struct DropletSpec {
-  bool two_way = false;      ///< they push the gas
+  bool two_way = false;      ///< they push the gas and the particles
   bool evaporation = false;  ///< they have a temperature, and exchange heat and vapour with the gas
 };
 

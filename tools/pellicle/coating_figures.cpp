@@ -36,10 +36,8 @@ CoatingFigures compute_coating_figures(const HostParticles& particles) {
   }
   std::tie(coating.mass_mean, coating.mass_variation) =
       mean_and_variation(n, [&](std::size_t p) { return particles.sample(p).film.solids; });
-  std::tie(coating.thickness_mean, coating.thickness_variation) = mean_and_variation(n, [&](std::size_t p) {
-    return heat::coating_thickness(particles.position_radius[p].radius, particles.sample(p).film.solids,
-                                   particles.solids_density);
-  });
+  std::tie(coating.thickness_mean, coating.thickness_variation) =
+      mean_and_variation(n, [&](std::size_t p) { return particles.sample(p).coating_thickness(); });
   return coating;
 }
 

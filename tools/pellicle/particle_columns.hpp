@@ -3,6 +3,7 @@
 
 #include "core/types.hpp"
 #include "dem/particles.hpp"
+#include "heat/film_laws.hpp"
 #include "heat/surface_state.hpp"
 #include "spray/hit_record.hpp"
 
@@ -17,7 +18,14 @@ struct ParticleSample {
   Real temperature = 0;  ///< [K]
   heat::Film film{};     ///< [kg]
   spray::HitRecord hit{};
-  Real solids_density = 1;  ///< of the dry coating [kg/m3]
+  Real solids_density = 1;    ///< of the dry coating [kg/m3]
+  bool radius_grows = false;  ///< the radius is that of the particle with its dry coating
+
+  /// Of the dry coating [m].
+  KOKKOS_INLINE_FUNCTION Real coating_thickness() const {
+    return radius_grows ? heat::coating_thickness_within(position_radius.radius, film.solids, solids_density)
+                        : heat::coating_thickness(position_radius.radius, film.solids, solids_density);
+  }
 };
 
 /// Device arrays in the particles' order; those that a case has not are empty.
@@ -27,6 +35,7 @@ struct ParticleColumns {
   DeviceArray<heat::Film> film{};
   DeviceArray<spray::HitRecord> hits{};
   Real solids_density = 1;  ///< [kg/m3]
+  bool radius_grows = false;
 
   ParticleColumns() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): particles without heat and spray are all that most have
@@ -42,6 +51,7 @@ struct ParticleColumns {
     if (film.extent(0) > 0) sample.film = film(p);
     if (hits.extent(0) > 0) sample.hit = hits(p);
     sample.solids_density = solids_density;
+    sample.radius_grows = radius_grows;
     return sample;
   }
 };

@@ -16,6 +16,7 @@ ParticleSample HostParticles::sample(std::size_t p) const {
   if (!film.empty()) sample.film = film[p];
   if (!hits.empty()) sample.hit = hits[p];
   sample.solids_density = solids_density;
+  sample.radius_grows = radius_grows;
   return sample;
 }
 
@@ -38,6 +39,7 @@ HostParticles copy_to_host(const ParticleColumns& columns) {
   fill(host.film, columns.film);
   fill(host.hits, columns.hits);
   host.solids_density = columns.solids_density;
+  host.radius_grows = columns.radius_grows;
   return host;
 }
 

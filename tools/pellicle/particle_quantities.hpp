@@ -12,7 +12,6 @@
 #include "core/vector.hpp"
 #include "core/views.hpp"
 #include "dem/particles.hpp"
-#include "heat/film_laws.hpp"
 #include "tools/pellicle/output_fields.hpp"
 #include "tools/pellicle/particle_columns.hpp"
 
@@ -58,7 +57,7 @@ KOKKOS_INLINE_FUNCTION Real particle_quantity(int quantity, const ParticleSample
     case 16:
       return particle.film.solids;
     case 17:
-      return heat::coating_thickness(place.radius, particle.film.solids, particle.solids_density);
+      return particle.coating_thickness();
     case 18:
       return static_cast<Real>(particle.hit.hits);
     case 19:
@@ -115,6 +114,7 @@ struct HostParticles {
   HostColumn<heat::Film> film;
   HostColumn<spray::HitRecord> hits;
   Real solids_density = 1;
+  bool radius_grows = false;
   std::size_t count() const { return mass.size(); }
   ParticleSample sample(std::size_t p) const;
 };

@@ -77,7 +77,7 @@ void Simulation::start() {
   if (particles_) {
     const std::vector<dem::ParticleSeed> seeds = make_particles(spec_, particles_->setup().walls);
     particles_->set_particles(seeds);
-    if (surface_) surface_->note_bare_masses();
+    if (surface_) surface_->note_bare_particles();
     if (spec_.heat) set_initial_surface(spec_, seeds, *surface_);
     if (surface_) surface_->grow(*particles_);
   }
@@ -498,8 +498,10 @@ void Simulation::update_ledger() {
   if (summary_.spray.two_way) {
     stock += summary_.spray.momentum.in_flight;
     through += summary_.spray.momentum_kept() + summary_.spray.impulses.bounced;
-    // The gas counts the momentum of all vapour as a source, also of that which comes from droplets.
-    sources += summary_.spray.impulses.gravity - summary_.spray.impulses.vapour;
+    // The gas counts the momentum of all vapour as a source, also of that which comes from droplets; that of captured droplets
+    // went out with them, and particles get it again, or what of it weightless films do not take.
+    sources += summary_.spray.impulses.gravity - summary_.spray.impulses.vapour +
+               summary_.spray.momentum.to_particles;
     gross += norm(summary_.spray.momentum.injected) + norm(summary_.spray.impulses.on_gas);
   }
   if (exchange_) {
@@ -593,6 +595,7 @@ ParticleColumns Simulation::particle_columns() const {
   if (surface_) {
     columns.film = surface_->film();
     columns.solids_density = spec_.coating.solids_density;
+    columns.radius_grows = spec_.coating.growth == heat::FilmGrowth::mass_and_radius;
   }
   return columns;
 }

@@ -114,10 +114,7 @@ void write_particle_field(core::Hdf5File& file, const std::string& group, const 
   } else if (field == "film_solids") {
     put([&](std::size_t p) { return particles.sample(p).film.solids; });
   } else if (field == "coating_thickness") {
-    put([&](std::size_t p) {
-      return heat::coating_thickness(places[p].radius, particles.sample(p).film.solids,
-                                     particles.solids_density);
-    });
+    put([&](std::size_t p) { return particles.sample(p).coating_thickness(); });
   } else if (field == "hits") {
     put([&](std::size_t p) { return static_cast<std::int32_t>(particles.sample(p).hit.hits); });
   } else {

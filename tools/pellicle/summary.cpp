@@ -46,6 +46,7 @@ Json momentum_json(const SprayFigures& spray) {
   json["overspray"] = vector_json(spray.momentum.overspray);
   json["in_flight"] = vector_json(spray.momentum.in_flight);
   json["to_gas"] = vector_json(spray.impulses.on_gas);
+  json["to_particles"] = vector_json(spray.momentum.to_particles);
   json["bounced"] = vector_json(spray.impulses.bounced);
   json["gravity"] = vector_json(spray.impulses.gravity);
   json["vapour"] = vector_json(spray.impulses.vapour);
