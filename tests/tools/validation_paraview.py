@@ -19,7 +19,7 @@ class ParaView(unittest.TestCase):
             results = pathlib.Path(folder) / "results"
             case = TOP / "cases" / "quickstart" / "case.yaml"
             subprocess.run([PROGRAM, "run", str(case), "--output", str(results), "--until", "0.02",
-                            "--set", "output.snapshots.every=0.005"], check=True)
+                            "--set", "output.snapshots.every=0.005", "--set", "output.average.from=0.005"], check=True)
             self.compare(results)
             # Moved elsewhere: the paths inside are relative.
             moved = pathlib.Path(folder) / "moved"
@@ -30,7 +30,7 @@ class ParaView(unittest.TestCase):
         check = subprocess.run(["pvpython", str(TOP / "tools" / "validation" / "check_paraview.py"), str(results)],
                                capture_output=True, text=True)
         self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
-        for name in ("particles", "gas"):
+        for name in ("particles", "gas", "gas_average"):
             self.assertIn(f"{name}.xdmf with XDMFReader", check.stdout)
 
 

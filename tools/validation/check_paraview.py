@@ -1,5 +1,5 @@
 #!/usr/bin/pvpython
-"""Opens the particles and the gas of a results folder in ParaView and compares every time step with the HDF5 files.
+"""Opens the particles, the gas and its averages of a results folder in ParaView and compares every time step with the HDF5 files.
 
     pvpython tools/validation/check_paraview.py RESULTS
 
@@ -16,8 +16,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 
 def snapshots(h5):
-    """(time, group) of every snapshot, in the order of time."""
-    groups = [h5[name] for name in h5 if name.startswith("step")]
+    """(time, group) of every snapshot, in the order of time; of averages the one that there is."""
+    groups = [h5[name] for name in h5 if name.startswith("step") or name == "average"]
     return sorted(((g.attrs["time"], g) for g in groups), key=lambda pair: pair[0])
 
 
@@ -83,13 +83,13 @@ def check_particles(folder, reader):
     return len(steps)
 
 
-def check_gas(folder, reader):
-    series = Series(folder / "gas.xdmf", reader)
-    with h5py.File(folder / "gas.h5") as h5:
+def check_gas(folder, reader, file="gas"):
+    series = Series(folder / f"{file}.xdmf", reader)
+    with h5py.File(folder / f"{file}.h5") as h5:
         steps = snapshots(h5)
-        check_times(series, [time for time, _ in steps], f"gas, {reader}")
+        check_times(series, [time for time, _ in steps], f"{file}, {reader}")
         for time, group in steps:
-            where = f"gas at t = {time} s, {reader}"
+            where = f"{file} at t = {time} s, {reader}"
             data = series.at(time)
             assert data.IsA("vtkRectilinearGrid"), f"{where}: a {data.GetClassName()}, not a rectilinear grid"
             for axis in "XYZ":
@@ -102,12 +102,16 @@ def check_gas(folder, reader):
     return len(steps)
 
 
+def check_gas_average(folder, reader):
+    return check_gas(folder, reader, "gas_average")
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     folder = Path(sys.argv[1]).resolve()
     checked = 0
-    for name, check in (("particles", check_particles), ("gas", check_gas)):
+    for name, check in (("particles", check_particles), ("gas", check_gas), ("gas_average", check_gas_average)):
         if not (folder / f"{name}.xdmf").exists():
             continue
         for reader in ("XDMFReader", "Xdmf3ReaderS"):
