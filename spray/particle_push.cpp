@@ -49,9 +49,9 @@ Vec3 push_particles(const dem::Particles& particles, const ParticlePushes& pushe
   const Index blocks = (particles.count + push_block - 1) / push_block;
   if (blocks == 0) return {};
   if (partial.extent(0) < static_cast<std::size_t>(blocks)) {
-    partial = DeviceArray<Vec3>(
-        Kokkos::view_alloc(Kokkos::WithoutInitializing, "spray::particle_push::partial"),
-        static_cast<std::size_t>(2 * blocks));
+    partial =
+        DeviceArray<Vec3>(Kokkos::view_alloc(Kokkos::WithoutInitializing, "spray::particle_push::partial"),
+                          static_cast<std::size_t>(2 * blocks));
   }
   Kokkos::parallel_for("spray::particle_push::push", DeviceRange(0, blocks),
                        PushParticles{particles, pushes, half_step, partial});

@@ -84,7 +84,8 @@ TEST(Growing, AColumnAtRestStaysInContact) {
   }
   // The books: mass of shells, and volume.
   const ParticleTotals totals = engine.compute_totals();
-  EXPECT_NEAR(engine.grown_mass(), 5 * tests::glass_mass(1e-3) * (1.01 * 1.01 * 1.01 - 1), 1e-12 * totals.mass);
+  EXPECT_NEAR(engine.grown_mass(), 5 * tests::glass_mass(1e-3) * (1.01 * 1.01 * 1.01 - 1),
+              1e-12 * totals.mass);
 }
 
 // Spheres at rest that do not touch grow until they do: half a radius, in steps of which a hundred fit into an allowance. The
@@ -180,7 +181,8 @@ TEST(Growing, GoesOnBitForBitFromACheckpoint) {
       tests::advance(*engine, 100);
     }
   }
-  const auto a = host_copy(whole.particles().position_radius, 5), b = host_copy(resumed.particles().position_radius, 5);
+  const auto a = host_copy(whole.particles().position_radius, 5),
+             b = host_copy(resumed.particles().position_radius, 5);
   for (Index p = 0; p < 5; ++p) {
     EXPECT_EQ(a(p).z, b(p).z);
     EXPECT_EQ(a(p).radius, b(p).radius);

@@ -43,7 +43,8 @@ Rig rig(heat::FilmGrowth growth) {
 }
 
 TEST(Growth, TheRadiusByHandAndWhatMeetsIt) {
-  for (const auto growth : {heat::FilmGrowth::none, heat::FilmGrowth::mass, heat::FilmGrowth::mass_and_radius}) {
+  for (const auto growth :
+       {heat::FilmGrowth::none, heat::FilmGrowth::mass, heat::FilmGrowth::mass_and_radius}) {
     const bool grows = growth == heat::FilmGrowth::mass_and_radius;
     Rig r = rig(growth);
     for (int k = 0; k < 8; ++k) r.outer_step();  // 4 ms
@@ -97,7 +98,8 @@ TEST(Growth, GoesOnFromACheckpoint) {
   fill(whole, 15);
   fill(resumed, 15);
   for (Index p = 0; p < 2; ++p) {
-    EXPECT_EQ(whole.engine.particles().position_radius(p).radius, resumed.engine.particles().position_radius(p).radius);
+    EXPECT_EQ(whole.engine.particles().position_radius(p).radius,
+              resumed.engine.particles().position_radius(p).radius);
     EXPECT_EQ(whole.engine.particles().mass(p), resumed.engine.particles().mass(p));
   }
   EXPECT_EQ(whole.records()[0].hits, 50);

@@ -89,7 +89,8 @@ TEST(ParticlePush, MomentumIsThatOfBeadsAndDropletsTogether) {
   std::vector<dem::ParticleSeed> beads;
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j)
-      beads.push_back(bead({0.0025 + 0.005 * i, 0.0025 + 0.005 * j, 0.013}, {0.1 * i, -0.2 * j, 0.05 * (i + j)}));
+      beads.push_back(
+          bead({0.0025 + 0.005 * i, 0.0025 + 0.005 * j, 0.013}, {0.1 * i, -0.2 * j, 0.05 * (i + j)}));
   }
   Rig rig(periodic_box(), beads, options, 10, heat::FilmGrowth::mass);
   const Vec3 before = rig.engine.compute_totals().momentum;
@@ -114,7 +115,8 @@ TEST(ParticlePush, GoesOnBitForBitFromACheckpoint) {
   options.nozzles[0].cone_angle = 1;
   options.nozzles[0].mass_rate /= 100;
   options.nozzles[0].to = 1e-2;
-  const std::vector<dem::ParticleSeed> beads{bead({0.009, 0.01, 0.01}, {0.2, 0, 0}), bead({0.013, 0.01, 0.01}, {})};
+  const std::vector<dem::ParticleSeed> beads{bead({0.009, 0.01, 0.01}, {0.2, 0, 0}),
+                                             bead({0.013, 0.01, 0.01}, {})};
   Rig whole(periodic_box(), beads, options, 10, heat::FilmGrowth::mass);
   for (int k = 0; k < 20; ++k) whole.outer_step();
   core::CheckpointWriter out(folder / "checkpoint.h5");
