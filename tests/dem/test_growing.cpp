@@ -86,6 +86,10 @@ TEST(Growing, AColumnAtRestStaysInContact) {
   const ParticleTotals totals = engine.compute_totals();
   EXPECT_NEAR(engine.grown_mass(), 5 * tests::glass_mass(1e-3) * (1.01 * 1.01 * 1.01 - 1),
               1e-12 * totals.mass);
+  const Real volume_time = engine.volume_time();
+  tests::advance(engine, 100);
+  const Real volume = 5 * 4.0 / 3 * M_PI * 1.01e-3 * 1.01e-3 * 1.01e-3;
+  EXPECT_NEAR(engine.volume_time() - volume_time, volume * 100 * 1e-5, 1e-9 * volume * 1e-3);
 }
 
 // Spheres at rest that do not touch grow until they do: half a radius, in steps of which a hundred fit into an allowance. The
@@ -96,6 +100,7 @@ TEST(Growing, RestingNeighboursFindEachOther) {
   seeds[0] = {{0.005, 0.01, 0.01}, {}, {}, 1e-3, 0, true};  // fixed: no displacement is ever summed for it
   seeds[1] = {{0.0079, 0.01, 0.01}, {}, {}, 1e-3, 0, false};
   seeds[2] = {{0.015, 0.01, 0.01}, {}, {}, 1e-3, 0, false};
+  setup.skin.tuned = false;  // it searches now and then by itself
   Engine engine(setup);
   engine.set_particles(seeds);
   int first = 0;
@@ -114,6 +119,7 @@ TEST(Growing, WallsAreFoundToo) {
   tests::add_box_walls(setup);
   std::vector<ParticleSeed> seeds(1);
   seeds[0] = {{0.01, 0.01, 0.0014}, {}, {}, 1e-3, 0, false};
+  setup.skin.tuned = false;  // it searches now and then by itself
   Engine engine(setup);
   engine.set_particles(seeds);
   int first = 0;

@@ -215,10 +215,10 @@ struct WetBox {
     setup.domain.periodic = {1, 1, 1};
     return setup;
   }
-  WetBox(Real temperature, Real fraction, const SprayOptions& spray_options)
+  WetBox(Real temperature, Real fraction, const SprayOptions& spray_options, int substeps = 10)
       : gas(temperature, fraction),
         options(spray_options),
-        rig(box(), {fixed_bead({0.019, 0.001, 0.019}, 1e-5)}, options),
+        rig(box(), {fixed_bead({0.019, 0.001, 0.019}, 1e-5)}, options, substeps),
         droplets(make(gas, rig.spray)) {
     rig.droplets = &droplets;
     rig.gas_temperature = DeviceArray<Real>("test::gas_temperature", 1);
@@ -232,7 +232,7 @@ struct WetBox {
   void step() {
     droplets.sample(gas.state);
     rig.outer_step();
-    gas.take(droplets, 1e-4);
+    gas.take(droplets, rig.substeps * 1e-5);
   }
   /// Of gas and droplets, as the ledger counts it: vapour with the latent heat at the reference [J].
   Real energy() const { return gas.heat + 2.4417e6 * gas.vapour + rig.spray.heat().in_flight; }
@@ -322,6 +322,23 @@ TEST(DropletEvaporation, EveryGramAndJouleInAClosedBox) {
   const Real droplets = box.rig.spray.heat().in_flight /
                         ((f.in_flight - f.in_flight_solids) * 4181 + f.in_flight_solids * 1300);
   EXPECT_NEAR(298.15 + droplets, box.gas.temperature(), 0.05);
+}
+
+// The gas that droplets see changes with what they gave, move by move: a gas step of 100 moves leaves what 100 of one do. Dense
+// mist that cools the gas by more than 10 K in 20 ms.
+TEST(DropletEvaporation, LongGasStepsSeeTheGasThatDropletsMade) {
+  WetBox fine(330, 0.005, WetBox::mist(1e5, 0.2, 290), 1),
+      coarse(330, 0.005, WetBox::mist(1e5, 0.2, 290), 100);
+  for (int k = 0; k < 20; ++k) {
+    for (int j = 0; j < 100; ++j) fine.step();
+    coarse.step();
+  }
+  const Real cooled = 330 - fine.gas.temperature(), wetter = fine.gas.fraction() - 0.005;
+  EXPECT_GT(cooled, 10);
+  EXPECT_GT(wetter, 2e-3);
+  // What is kept back until the step's end is the change of the heat capacity with the vapour, and the rounding of the mean.
+  EXPECT_NEAR(coarse.gas.temperature(), fine.gas.temperature(), 0.02 * cooled);
+  EXPECT_NEAR(coarse.gas.fraction(), fine.gas.fraction(), 0.02 * wetter);
 }
 
 // Few droplets in hot dry gas: all become dust, which is as large as its solids.
