@@ -395,6 +395,8 @@ TEST(DropletEvaporation, CapturedDropletsBringTheirOwnHeat) {
   EXPECT_GT(rig.surface.temperature()(0), 300);
   EXPECT_LT(rig.spray.heat().enthalpy, f.injected * (0.8 * 4181 + 0.2 * 1300) * (350 - 298.15));
   EXPECT_GT(after.enthalpy - before.enthalpy, 0.25 * most);
+  // Counted from the surface's reference the particle has exactly what the droplets had over theirs.
+  EXPECT_NEAR(after.enthalpy - before.enthalpy, rig.spray.heat().enthalpy, 1e-12 * after.enthalpy);
   EXPECT_EQ(rig.spray.heat().free_heat, 0);
 }
 
