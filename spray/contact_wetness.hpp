@@ -53,7 +53,7 @@ class ContactWetness {
   const WetnessOptions& options() const { return options_; }
 
   void save(core::CheckpointWriter& file) const;
-  /// Begins at zero where the checkpoint knows nothing of this region.
+  /// A region that is new, or another one than the checkpoint's, begins at zero, with a warning.
   void load(const core::CheckpointReader& file);
 
  private:

@@ -3,6 +3,8 @@
 
 #include <Kokkos_Core.hpp>
 
+#include <string>
+
 #include "core/types.hpp"
 #include "core/vector.hpp"
 
@@ -27,5 +29,8 @@ struct ZoneShape {
     return along >= -margin && along <= length + margin && norm_squared(d - along * axis) <= reach * reach;
   }
 };
+
+/// The numbers that make it what it is, for checkpoints.
+std::string describe(const ZoneShape& shape);
 
 }  // namespace pellicle::spray

@@ -1,6 +1,11 @@
 #include "spray/zone_visits.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "core/checkpoint.hpp"
+#include "core/log.hpp"
 
 namespace pellicle::spray {
 namespace {
@@ -86,6 +91,11 @@ struct UpdateVisits {
   }
 };
 
+// The last visit counts once the particle has been away for long enough.
+KOKKOS_INLINE_FUNCTION bool has_ended(const Visit& visit, Real time, Real shortest_absence) {
+  return visit.entries > 0 && visit.inside == 0 && time - visit.left >= shortest_absence;
+}
+
 struct SumZone {
   Index count, classes;
   Real smallest, largest, time, shortest_absence;
@@ -121,8 +131,7 @@ struct SumZone {
     sum.cycles = visit.entries > 0 ? visit.entries - 1 : 0;
     sum.visits = sum.cycles;
     sum.residence = visit.residence;
-    // The last visit counts once the particle has been away for long enough.
-    if (visit.entries > 0 && visit.inside == 0 && time - visit.left >= shortest_absence) {
+    if (has_ended(visit, time, shortest_absence)) {
       sum.visits += 1;
       sum.residence += visit.left - visit.entered;
     }
@@ -137,14 +146,18 @@ struct SumZone {
   }
 };
 
-struct CountOpen {
-  Real time, longest;
+// What has not been counted as particles entered anew: cycles that go on, and the last visit of each if it has ended.
+struct CountLast {
+  Real time, longest, shortest_absence;
   Index bins;
   DeviceArray<Visit> visits;
-  DeviceArray<std::int64_t> counts;
+  DeviceArray<std::int64_t> open, residence;
   KOKKOS_INLINE_FUNCTION void operator()(const Index p) const {
-    if (visits(p).entries == 0) return;
-    Kokkos::atomic_inc(&counts(bin_of(time - visits(p).entered, longest, bins)));
+    const Visit& visit = visits(p);
+    if (visit.entries == 0) return;
+    Kokkos::atomic_inc(&open(bin_of(time - visit.entered, longest, bins)));
+    if (has_ended(visit, time, shortest_absence))
+      Kokkos::atomic_inc(&residence(bin_of(visit.left - visit.entered, longest, bins)));
   }
 };
 
@@ -158,6 +171,12 @@ void from_file(const core::CheckpointReader& file, const std::string& name,
   const auto host = Kokkos::create_mirror_view(counts);
   file.read_into(name, host);
   Kokkos::deep_copy(counts, host);
+}
+
+// What makes a zone another one.
+std::string identity_of(const ZoneOptions& o) {
+  return fmt::format("{}; absence {}, longest {}, {} bins, {} size classes", describe(o.shape),
+                     o.shortest_absence, o.longest_time, o.bins, o.size_classes);
 }
 
 std::string path_of(const ZoneOptions& options, const char* what) {
@@ -187,6 +206,7 @@ void ZoneVisits::update(Real time, const DeviceArray<heat::Film>& film) {
     find_radii();
     Kokkos::parallel_for("spray::zone_visits::mark_inside", all,
                          MarkInside{options_.shape, particles_.position_radius, visits_.values()});
+    start_ = time;
     started_ = true;
     return;
   }
@@ -215,11 +235,14 @@ std::vector<ZoneSums> ZoneVisits::compute_sums(Real time, const DeviceArray<heat
 
 ZoneHistograms ZoneVisits::compute_histograms(Real time) const {
   const DeviceArray<std::int64_t> open("spray::zone_visits::open", cycle_counts_.extent(0));
+  const DeviceArray<std::int64_t> residence("spray::zone_visits::residence", residence_counts_.extent(0));
+  Kokkos::deep_copy(residence, residence_counts_);
   if (particles_.count > 0) {
-    Kokkos::parallel_for("spray::zone_visits::count_open", DeviceRange(0, particles_.count),
-                         CountOpen{time, options_.longest_time, options_.bins, visits_.values(), open});
+    Kokkos::parallel_for("spray::zone_visits::count_last", DeviceRange(0, particles_.count),
+                         CountLast{time, options_.longest_time, options_.shortest_absence, options_.bins,
+                                   visits_.values(), open, residence});
   }
-  return {to_host(cycle_counts_), to_host(open), to_host(residence_counts_)};
+  return {to_host(cycle_counts_), to_host(open), to_host(residence)};
 }
 
 void ZoneVisits::reset(Index count) {
@@ -248,12 +271,20 @@ void ZoneVisits::save(core::CheckpointWriter& file, Index count) const {
   file.write(path_of(options_, "residence_counts"), to_host(residence_counts_));
   file.write(path_of(options_, "smallest_radius"), smallest_radius_);
   file.write(path_of(options_, "largest_radius"), largest_radius_);
+  file.write(path_of(options_, "is"), identity_of(options_));
+  file.write(path_of(options_, "start"), start_);
   file.write(path_of(options_, "started"), std::int64_t{started_ ? 1 : 0});
 }
 
 void ZoneVisits::load(const core::CheckpointReader& file, Index count) {
   reset(count);
-  if (!file.has(path_of(options_, "started"))) return;  // a zone that is new with this run
+  if (!file.has(path_of(options_, "is")) ||
+      file.read_string(path_of(options_, "is")) != identity_of(options_)) {
+    core::log().warn("the zone {} is new or has changed since the checkpoint: its counts begin now",
+                     options_.name);
+    return;
+  }
+  start_ = file.read_double(path_of(options_, "start"));
   visits_.load(file, count);
   cycles_.load(file, count);
   from_file(file, path_of(options_, "cycle_counts"), cycle_counts_);

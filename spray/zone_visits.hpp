@@ -96,6 +96,8 @@ class ZoneVisits final : public dem::Companion {
   /// Radius [m] between which the size classes lie, of the particles at the start.
   std::array<Real, 2> radii() const { return {smallest_radius_, largest_radius_}; }
   ZoneHistograms compute_histograms(Real time) const;
+  /// When it was begun to watch [s].
+  Real start() const { return start_; }
   const ZoneOptions& options() const { return options_; }
 
   void reset(Index count) override;
@@ -103,6 +105,7 @@ class ZoneVisits final : public dem::Companion {
   void reorder(const DeviceArray<std::int32_t>& order, Index before, Index count,
                const DeviceArray<Real>& scratch) override;
   void save(core::CheckpointWriter& file, Index count) const override;
+  /// A zone that is new, or another one than the checkpoint's, begins now, with a warning.
   void load(const core::CheckpointReader& file, Index count) override;
   std::size_t bytes() const override { return visits_.bytes() + cycles_.bytes(); }
 
@@ -115,6 +118,7 @@ class ZoneVisits final : public dem::Companion {
   dem::FollowingArray<Cycles> cycles_;
   DeviceArray<std::int64_t> cycle_counts_, residence_counts_;
   Real smallest_radius_ = 0, largest_radius_ = 0;  // [m]; 0 until they are known
+  Real start_ = 0;                                 // [s]
   bool started_ = false;
 };
 

@@ -146,6 +146,58 @@ TEST(ZoneVisits, GoesThroughACheckpoint) {
   EXPECT_EQ(resumed.compute_histograms(10).cycle_time, zone.compute_histograms(10).cycle_time);
   EXPECT_EQ(resumed.compute_histograms(10).residence, zone.compute_histograms(10).residence);
   EXPECT_EQ(resumed.radii(), zone.radii());
+  EXPECT_EQ(resumed.start(), 0);
+}
+
+// Counts of another place, or of other bins, are no counts of this one.
+TEST(ZoneVisits, OneThatChangedBeginsAnew) {
+  const tests::TemporaryFolder folder;
+  Paths paths(1);
+  ZoneVisits zone(unit_box(), paths.particles);
+  zone.reset(1);
+  paths.put(0, out, 1e-3, 0);
+  zone.update(0, paths.film);
+  paths.put(0, in, 1e-3, 0);
+  zone.update(1, paths.film);
+  {
+    core::CheckpointWriter file(folder / "checkpoint.h5");
+    zone.save(file, 1);
+    file.close();
+  }
+  std::vector<ZoneOptions> others(4, unit_box());
+  others[0].shape.max.x += 0.5;
+  others[1].bins += 1;
+  others[2].shortest_absence += 0.25;
+  others[3].longest_time += 1;
+  for (const ZoneOptions& options : others) {
+    ZoneVisits changed(options, paths.particles);
+    changed.load(core::CheckpointReader(folder / "checkpoint.h5"), 1);
+    changed.update(2, paths.film);  // inside at its start: it has not entered
+    EXPECT_EQ(total(changed.compute_sums(3, paths.film)).entries, 0);
+    EXPECT_EQ(changed.start(), 2);
+  }
+}
+
+TEST(ZoneVisits, LastVisitIsInTheHistogramOnceItHasEnded) {
+  ZoneOptions options = unit_box();
+  options.shortest_absence = 0.5;
+  Paths paths(1);
+  ZoneVisits zone(options, paths.particles);
+  zone.reset(1);
+  paths.put(0, out, 1e-3, 0);
+  zone.update(0, paths.film);
+  paths.put(0, in, 1e-3, 0);
+  zone.update(1, paths.film);
+  paths.put(0, out, 1e-3, 0);
+  zone.update(3.5, paths.film);
+  const auto ended = [&](Real time) {
+    std::int64_t all = 0;
+    for (const std::int64_t count : zone.compute_histograms(time).residence) all += count;
+    return all;
+  };
+  EXPECT_EQ(ended(3.75), 0);  // it may still come back
+  EXPECT_EQ(ended(4), 1);
+  EXPECT_EQ(zone.compute_histograms(4).residence[2], 1);  // 2.5 s in bins of 1 s
 }
 
 TEST(ZoneVisits, ShortAbsenceIsNone) {

@@ -181,3 +181,29 @@ TEST(Histograms, CountsByHand) {
             "time [s],particle_speed_from [m/s],particle_speed_to [m/s],mass [kg],density [1/(m/s)]\n"
             "0.4,1,3,2,0.125\n0.4,3,5,6,0.375\n");
 }
+
+// from + bins x ((to - from) / bins) can be rounded to less than `to`: the fastest still counts.
+TEST(Histograms, NobodyIsLeftOutOfTheRangeFound) {
+  TemporaryFolder folder;
+  const ResultsFolder results(folder / "r", ResultsFolder::Existing::refuse);
+  core::TimeControl time(1, 0.1, 0.1);
+  HistogramSpec spec;
+  spec.name = "speed";
+  spec.quantity = "particle_speed";
+  spec.bins = 50;
+  spec.every = 0.1;
+  Histograms histograms({spec}, time, results, std::nullopt);
+  constexpr int ranges = 1000;  // of which some twenty are rounded so
+  for (int n = 0; n < ranges; ++n) {
+    const Real low = 0.001 * (n * 7919 % 1000) / 7, high = low + 0.001 * (n * 104729 % 1000 + 1) / 3;
+    const ParticleColumns particles = tests::make_particles(
+        {{{}, {low, 0, 0}, 0}, {{}, {0.5 * (low + high), 0, 0}, 1}, {{}, {high, 0, 0}, 2}});
+    histograms.sample({.step = n, .time = 0.1 * n, .particles = &particles}, false);
+  }
+  histograms.flush();
+  const core::CsvTable table = core::read_csv(results.csv("histograms", "speed"));
+  ASSERT_EQ(table.rows(), 50u * ranges);
+  double counted = 0;
+  for (const double count : table.columns[3]) counted += count;
+  EXPECT_EQ(counted, 3 * ranges);
+}

@@ -116,5 +116,19 @@ TEST(Histograms, OneHdf5FileHoldsThemAll) {
   EXPECT_EQ(file.shape("empty/time"), (std::vector<std::size_t>{0}));
 }
 
+// A run that was resumed with two bins in place of three: the file has the times since; the table has all.
+TEST(Histograms, Hdf5FileHasTheTimesOfTheBinsAtHand) {
+  const tests::TemporaryFolder folder;
+  const ResultsFolder results(folder / "r", ResultsFolder::Existing::refuse);
+  core::write_csv(results.csv("histograms", "speed"),
+                  {{"time [s]", "count [-]"},
+                   {{0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1.5, 1.5}, {7, 8, 9, 10, 11, 12, 13, 14, 15, 16}}});
+  write_histogram_file(results.path());
+  const core::Hdf5File file(results.path() / "histograms.h5", core::Hdf5File::Mode::read);
+  EXPECT_EQ(file.read<double>("speed/time"), (std::vector<double>{1, 1.5}));
+  EXPECT_EQ(file.shape("speed/count"), (std::vector<std::size_t>{2, 2}));
+  EXPECT_EQ(file.read<double>("speed/count"), (std::vector<double>{13, 14, 15, 16}));
+}
+
 }  // namespace
 }  // namespace pellicle::tools

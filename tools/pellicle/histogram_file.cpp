@@ -16,10 +16,17 @@ namespace {
 
 void write_table(core::Hdf5File& file, const std::string& group, const core::CsvTable& table) {
   const std::vector<double>& time = table.columns.front();
-  // Every time has as many rows as there are bins.
-  const auto bins = static_cast<std::size_t>(
-      std::find_if(time.begin(), time.end(), [&](double t) { return t != time[0]; }) - time.begin());
-  const std::size_t times = bins > 0 ? table.rows() / bins : 0;
+  // Of the last times that have the same number of rows: a run that was resumed with other bins goes on with those.
+  const std::size_t rows = table.rows();
+  std::size_t begin = rows, bins = 0;
+  while (begin > 0) {
+    std::size_t first = begin;
+    while (first > 0 && time[first - 1] == time[begin - 1]) --first;
+    if (bins > 0 && begin - first != bins) break;
+    bins = begin - first;
+    begin = first;
+  }
+  const std::size_t times = bins > 0 ? (rows - begin) / bins : 0;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const std::string& header = table.header[c];
     const std::size_t bracket = header.find(" [");
@@ -27,10 +34,10 @@ void write_table(core::Hdf5File& file, const std::string& group, const core::Csv
     const std::vector<double>& values = table.columns[c];
     if (c == 0) {
       std::vector<double> each(times);
-      for (std::size_t n = 0; n < times; ++n) each[n] = values[n * bins];
+      for (std::size_t n = 0; n < times; ++n) each[n] = values[begin + n * bins];
       file.write<double>(name, each);
     } else {
-      file.write<double>(name, std::span(values).first(times * bins), std::array{times, bins});
+      file.write<double>(name, std::span(values).subspan(begin), std::array{times, bins});
     }
     if (bracket != std::string::npos)
       file.set_attribute(name, "unit", header.substr(bracket + 2, header.size() - bracket - 3));

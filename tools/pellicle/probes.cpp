@@ -265,14 +265,14 @@ namespace {
 
 /// Bins of one quantity.
 struct Bins {
-  Real from, width;
+  Real from, to, width;
   std::size_t count;
 
   Bins(const std::vector<Real>& values, std::optional<Real> min, std::optional<Real> max, Index bins)
       : count(static_cast<std::size_t>(bins)) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     from = min.value_or(*least);
-    Real to = max.value_or(*most);
+    to = max.value_or(*most);
     // All equal: one bin's width around the value, so that the bins have a size.
     if (!(to > from)) to = from + std::max(1e-12, 1e-6 * std::abs(from));
     width = (to - from) / bins;
@@ -281,7 +281,7 @@ struct Bins {
   /// `count` for what is outside.
   std::size_t find(Real value) const {
     const Real at = (value - from) / width;
-    if (!(at >= 0) || value > low(count)) return count;
+    if (!(at >= 0) || value > to) return count;  // low(count) may be rounded to less
     return std::min(count - 1, static_cast<std::size_t>(at));
   }
 };

@@ -28,22 +28,13 @@ const std::vector<std::string> figures_header{"time [s]",
                                               "coating_mean [kg]",
                                               "coating_cov [-]"};
 
-const std::vector<std::string> groups_header{"time [s]",
-                                             "size_class [-]",
-                                             "diameter_from [m]",
-                                             "diameter_to [m]",
-                                             "group [-]",
-                                             "particles [-]",
-                                             "entered [-]",
-                                             "entries [-]",
-                                             "cycles [-]",
-                                             "cycle_time [s]",
-                                             "cycle_time_squared [s2]",
-                                             "gain [kg]",
-                                             "gain_squared [kg2]",
-                                             "time_gain [s kg]",
-                                             "coating [kg]",
-                                             "coating_squared [kg2]"};
+const std::vector<std::string> groups_header{
+    "time [s]",          "watched [s]",          "size_class [-]",
+    "diameter_from [m]", "diameter_to [m]",      "group [-]",
+    "particles [-]",     "entered [-]",          "entries [-]",
+    "cycles [-]",        "cycle_time [s]",       "cycle_time_squared [s2]",
+    "gain [kg]",         "gain_squared [kg2]",   "time_gain [s kg]",
+    "coating [kg]",      "coating_squared [kg2]"};
 
 const std::vector<std::string> times_header{"time [s]",   "from [s]",        "to [s]",
                                             "cycles [-]", "open_cycles [-]", "visits [-]"};
@@ -128,7 +119,7 @@ void ZoneOutputs::sample(const OutputState& state, bool last) {
     const std::vector<ZoneSums> sums = zone.compute_sums(state.time, state.particles->film);
     ZoneSums all;
     for (const ZoneSums& part : sums) all += part;
-    const ZoneFigures f = compute_zone_figures(all, state.time);
+    const ZoneFigures f = compute_zone_figures(all, state.time - zone.start());
     series.figures.append(std::array<double, 15>{state.time, all.inside, all.entered, all.entries, all.visits,
                                                  f.mean_residence, all.cycles, f.mean_cycle_time,
                                                  f.sd_cycle_time, f.steady_cycle_time, f.mean_gain, f.sd_gain,
@@ -138,10 +129,11 @@ void ZoneOutputs::sample(const OutputState& state, bool last) {
     for (Index c = 0; c < zone.options().size_classes; ++c) {
       for (Index g = 0; g < zone_groups; ++g) {
         const ZoneSums& s = sums[static_cast<std::size_t>(c) * zone_groups + static_cast<std::size_t>(g)];
-        series.groups.append(std::array<double, 16>{
-            state.time, static_cast<double>(c), 2 * smallest + width * c, 2 * smallest + width * (c + 1),
-            static_cast<double>(g), s.particles, s.entered, s.entries, s.cycles, s.cycle_time,
-            s.cycle_time_squared, s.gain, s.gain_squared, s.time_gain, s.solids, s.solids_squared});
+        series.groups.append(std::array<double, 17>{
+            state.time, state.time - zone.start(), static_cast<double>(c), 2 * smallest + width * c,
+            2 * smallest + width * (c + 1), static_cast<double>(g), s.particles, s.entered, s.entries,
+            s.cycles, s.cycle_time, s.cycle_time_squared, s.gain, s.gain_squared, s.time_gain, s.solids,
+            s.solids_squared});
       }
     }
     const spray::ZoneHistograms counts = zone.compute_histograms(state.time);

@@ -109,9 +109,9 @@ def add(rows):
     return total
 
 
-def moments(sums, before, time, sprayed):
+def moments(sums, before, time, sprayed, between):
     """Of cycles from sums over particles in `time`, of which they were `sprayed` for so long; `before` are those at the
-    start. `steady` needs no cycle to have ended."""
+    start of the spray, or `between` before the end. `steady` needs no cycle to have ended."""
     n = sums["cycles"]
     gained = sums["coating"] - before["coating"]
     if n < 2 or sums["entries"] < 1 or gained <= 0:
@@ -122,7 +122,7 @@ def moments(sums, before, time, sprayed):
     return {
         "steady": sums["particles"] * time / sums["entries"],
         "initial": before["coating"] / sums["particles"],
-        "rate": gained / sums["particles"] / sprayed,
+        "rate": gained / sums["particles"] / between,
         "time_variance": max(0.0, (sums["cycle_time_squared"] - n * mean_time**2) / (n - 1)),
         "gain_variance": max(0.0, (gain_squared - n * mean_gain**2) / (n - 1)),
         "covariance": (time_gain - n * mean_time * mean_gain) / (n - 1),
@@ -175,13 +175,19 @@ def predict(tables, times, at, start=0.0):
     time = groups[0]["time"]
     if not (time > start and min(at) > start):
         sys.exit(f"the spray begins at {start:g} s: later times are needed")
+    watched = groups[0].get("watched", time)
+    sprayed = time - max(start, time - watched)  # of the time that was watched
     if first[0]["time"] > start:
-        first = [dict(row, coating=0.0, coating_squared=0.0) for row in groups]
+        if watched < time:
+            # A zone that a resumed run has begun to watch: what is there at its first row counts as the start.
+            start = first[0]["time"]
+        else:
+            first = [dict(row, coating=0.0, coating_squared=0.0) for row in groups]
     there, then = add(groups)["particles"], add(first)["particles"]
     if abs(there - then) > 0.01 * then:
         sys.exit(f"the particles are not the same throughout: {then:g} at the start, {there:g} at the end; allowed: a "
                  "change of 1 %")
-    every = moments(add(groups), add(first), time, time - start)
+    every = moments(add(groups), add(first), watched, sprayed, time - start)
     if every is None:
         sys.exit("fewer than two cycles have ended, or nothing is coated yet: a longer run is needed")
     spread, open_share = cycle_variance(times, every["steady"])
@@ -191,7 +197,7 @@ def predict(tables, times, at, start=0.0):
     widening = spread / every["time_variance"] if every["time_variance"] > 0 else 1.0
 
     def figures(rows, earlier, before):
-        m = moments(add(rows), add(before), time, time - start)
+        m = moments(add(rows), add(before), watched, sprayed, time - start)
         if m is None:
             return None
         r = m["rate"]
