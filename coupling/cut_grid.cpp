@@ -1,22 +1,13 @@
 #include "coupling/cut_grid.hpp"
 
-#include <string>
 #include <vector>
 
 #include "cfd/flow_geometry.hpp"
+#include "core/to_device.hpp"
 
 namespace pellicle::coupling {
 
 namespace {
-
-template <class T>
-DeviceArray<T> to_device(const char* label, const std::vector<T>& from) {
-  DeviceArray<T> made(Kokkos::view_alloc(std::string(label), Kokkos::WithoutInitializing), from.size());
-  const auto host = Kokkos::create_mirror_view(made);
-  for (std::size_t i = 0; i < from.size(); ++i) host(i) = from[i];
-  Kokkos::deep_copy(made, host);
-  return made;
-}
 
 /// Calls f(side, neighbour) for the cells across a cell's sides, open or not.
 template <class F>

@@ -86,8 +86,6 @@ class MomentumExchange {
   bool has_one_grid() const { return one_grid_; }
   /// Gas velocity of the gas grid's cells as sampled last [m/s].
   const DeviceArray<Vec3>& gas_velocity() const { return gas_velocity_; }
-  /// Density and viscosity likewise; empty where they do not vary.
-  const DeviceArray<LocalGas>& local_gas() const { return local_gas_; }
   /// The gas grid on the device.
   const GridLocator& gas_locator() const {
     return one_grid_ ? transfer_footprint_.grid() : gas_footprint_.grid();

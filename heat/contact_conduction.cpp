@@ -6,6 +6,7 @@
 
 #include "core/checkpoint.hpp"
 #include "core/error.hpp"
+#include "core/to_device.hpp"
 #include "dem/wall_candidates.hpp"
 
 namespace pellicle::heat {
@@ -186,14 +187,6 @@ void ensure_size(DeviceArray<T>& array, Index count, const char* label) {
   if (array.extent(0) >= static_cast<std::size_t>(count)) return;
   array = DeviceArray<T>(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
                          static_cast<std::size_t>(count + count / 4));
-}
-
-DeviceArray<Real> to_device(const char* label, const std::vector<Real>& values) {
-  DeviceArray<Real> array(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), values.size());
-  const auto host = Kokkos::create_mirror_view(array);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(array, host);
-  return array;
 }
 
 }  // namespace

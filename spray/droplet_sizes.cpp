@@ -1,22 +1,11 @@
 #include "spray/droplet_sizes.hpp"
 
-#include <algorithm>
 #include <numbers>
-#include <string>
 #include <vector>
 
+#include "core/to_device.hpp"
+
 namespace pellicle::spray {
-namespace {
-
-DeviceArray<Real> to_device(const char* label, const std::vector<Real>& values) {
-  DeviceArray<Real> array(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), values.size());
-  const auto host = Kokkos::create_mirror_view(array);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(array, host);
-  return array;
-}
-
-}  // namespace
 
 DropletSizes make_droplet_sizes(const DropletDiameter& diameter, Real& mean_volume) {
   std::vector<Real> edges{0};

@@ -4,21 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "core/to_device.hpp"
+
 namespace pellicle::spray {
 namespace {
 
 /// Particles are faster within an outer step than at its beginning by no more than this [m/s]; it widens the search, and
 /// one that is faster still is met at the next move.
 constexpr Real speed_margin = 1;
-
-template <class T>
-DeviceArray<T> to_device(const char* label, const std::vector<T>& values) {
-  DeviceArray<T> array(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), values.size());
-  const auto host = Kokkos::create_mirror_view(array);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(array, host);
-  return array;
-}
 
 /// Where every wall is at a time [s] after walls began to move.
 struct FindPoses {
