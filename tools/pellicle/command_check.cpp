@@ -104,6 +104,22 @@ void add_inlets(Facts& facts, const CaseSpec& spec, const CartesianGrid& grid) {
   }
 }
 
+/// How many parcels a particle will have met: below some ten the coating is as uneven as the parcels make it.
+void add_spray(Facts& facts, const CaseSpec& spec) {
+  const auto particles = static_cast<Real>(particle_count(spec));
+  for (const auto& nozzle : spec.spray) {
+    facts.add("spray " + nozzle.name, "{:.4g} g/min with {:.3g} % solids from {:g} to {:g} s",
+              6e4 * nozzle.mass_rate, 100 * nozzle.solids_fraction, nozzle.from, nozzle.to);
+    if (nozzle.sizes || particles == 0) continue;  // the mean volume is known when the run begins
+    const Real parcel =
+        nozzle.droplets_per_parcel * nozzle.density * dem::sphere_volume(0.5 * nozzle.droplet_diameter);
+    const Real parcels = nozzle.mass_rate * (nozzle.to - nozzle.from) / parcel;
+    facts.add("", "{:.4g} parcels of {:g} droplets, {:.3g} a particle{}", parcels, nozzle.droplets_per_parcel,
+              parcels / particles,
+              parcels < 10 * particles ? ": so few make coatings uneven, docs/theory/spray.md" : "");
+  }
+}
+
 std::string cells_text(const CartesianGrid& grid) {
   Vec3 least = {1e300, 1e300, 1e300}, most{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -171,6 +187,7 @@ std::string describe_case_text(const CaseSpec& spec) {
     facts.add("drag", "{}", spec.coupling.drag);
     facts.add("transfer grid", "{}", cells_text(make_grid(spec.coupling.transfer_grid, spec.domain)));
   }
+  if (!spec.particles.empty()) add_spray(facts, spec);
   facts.add("output", "{} lines, {} probes, {} histograms", spec.output.lines.size(),
             spec.output.probes.size(), spec.output.histograms.size());
   return fmt::format("{}\n{}", spec.title, facts.text());

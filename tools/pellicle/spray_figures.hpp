@@ -9,7 +9,7 @@
 
 namespace pellicle::tools {
 
-/// Since the start; injected = captured + wall_loss + overspray + in_flight, of each nozzle and of all.
+/// Since the start; injected = captured + wall_loss + overspray + in_flight + evaporated, of each nozzle and of all.
 struct SprayFigures {
   std::vector<spray::NozzleFigures> nozzles;
   spray::SprayHeat heat;

@@ -29,10 +29,18 @@ double particle_seconds(const Summary& summary) {
 
 /// The masses of a nozzle, or of all [kg].
 constexpr std::pair<const char*, Real spray::NozzleFigures::*> spray_masses[] = {
-    {"injected", &spray::NozzleFigures::injected},   {"captured", &spray::NozzleFigures::captured},
-    {"wall_loss", &spray::NozzleFigures::wall_loss}, {"overspray", &spray::NozzleFigures::overspray},
-    {"in_flight", &spray::NozzleFigures::in_flight}, {"evaporated", &spray::NozzleFigures::evaporated},
-    {"dried", &spray::NozzleFigures::dried},         {"dust_captured", &spray::NozzleFigures::dust_captured},
+    {"injected", &spray::NozzleFigures::injected},
+    {"captured", &spray::NozzleFigures::captured},
+    {"wall_loss", &spray::NozzleFigures::wall_loss},
+    {"overspray", &spray::NozzleFigures::overspray},
+    {"in_flight", &spray::NozzleFigures::in_flight},
+    {"evaporated", &spray::NozzleFigures::evaporated},
+    {"dried", &spray::NozzleFigures::dried},
+    {"dust_captured", &spray::NozzleFigures::dust_captured},
+    {"captured_solids", &spray::NozzleFigures::captured_solids},
+    {"wall_solids", &spray::NozzleFigures::wall_solids},
+    {"overspray_solids", &spray::NozzleFigures::overspray_solids},
+    {"in_flight_solids", &spray::NozzleFigures::in_flight_solids},
 };
 
 Json vector_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
@@ -345,7 +353,16 @@ std::string report_text(const Summary& summary) {
     line("  in flight", fmt::format("{:.2f} %", share(&spray::NozzleFigures::in_flight)));
     if (spray.total(&spray::NozzleFigures::evaporated) != 0) {
       line("  evaporated in flight", fmt::format("{:.2f} %", share(&spray::NozzleFigures::evaporated)));
-      line("  solids dried to dust", fmt::format("{:.2f} %", share(&spray::NozzleFigures::dried)));
+      // What coats is the solids: masses above are less by what evaporated.
+      const Real solids = spray.solids_injected();
+      const auto of_solids = [&](Real spray::NozzleFigures::*mass) {
+        return solids > 0 ? 100 * spray.total(mass) / solids : 0;
+      };
+      line("  of the solids captured",
+           fmt::format("{:.2f} %", of_solids(&spray::NozzleFigures::captured_solids)));
+      line("  of the solids on walls",
+           fmt::format("{:.2f} %", of_solids(&spray::NozzleFigures::wall_solids)));
+      line("  of the solids dried to dust", fmt::format("{:.2f} %", of_solids(&spray::NozzleFigures::dried)));
     }
     if (spray.heat.free_heat != 0)
       line("  heated for nothing", fmt::format("{:.4g} J", spray.heat.free_heat));
