@@ -22,9 +22,12 @@ struct Problem {
     std::uniform_real_distribution<Real> spread(0.8, 1.2);
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
+      std::vector<Real> scatter(
+          matrix.coefficient[a].extent(0));  // drawn here: the loop may have several threads
+      for (Real& factor : scatter) factor = spread(random);
       for_faces("tests::cfd::coefficient", s, axis, [&](Index f, Index m, Index, Index position, Index) {
         const bool bed = grid.coordinates(m).z < s.n.z / 2;
-        matrix.coefficient[a](f) = spread(random) * geometry.area[a](f) /
+        matrix.coefficient[a](f) = scatter[static_cast<std::size_t>(f)] * geometry.area[a](f) /
                                    geometry.axis[a].distance[static_cast<std::size_t>(position)] /
                                    (bed ? jump : 1);
       });
