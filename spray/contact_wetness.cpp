@@ -1,11 +1,9 @@
 #include "spray/contact_wetness.hpp"
 
-#include <fmt/format.h>
-
-#include "core/log.hpp"
 #include "dem/cell_grid.hpp"
 #include "dem/wall_candidates.hpp"
 #include "dem/wall_list.hpp"
+#include "spray/region_identity.hpp"
 
 namespace pellicle::spray {
 namespace {
@@ -125,13 +123,6 @@ std::vector<std::int64_t> to_host(const DeviceArray<std::int64_t>& counts) {
   return {host.data(), host.data() + host.extent(0)};
 }
 
-// What makes a region another one.
-std::string identity_of(const WetnessOptions& o) {
-  return fmt::format("{}; measure {}, to {} in {}, to {} m/s in {}, sampled {}", describe(o.shape),
-                     static_cast<int>(o.measure), o.wettest, o.bins, o.fastest, o.speed_bins,
-                     o.every_substep);
-}
-
 std::string path_of(const WetnessOptions& options, const char* what) {
   return "wetness/" + options.name + "/" + what;
 }
@@ -184,12 +175,7 @@ void ContactWetness::save(core::CheckpointWriter& file) const {
 }
 
 void ContactWetness::load(const core::CheckpointReader& file) {
-  if (!file.has(path_of(options_, "is")) ||
-      file.read_string(path_of(options_, "is")) != identity_of(options_)) {
-    core::log().warn("the wetness of {} is new or has changed since the checkpoint: its counts begin now",
-                     options_.name);
-    return;
-  }
+  if (!goes_on(file, path_of(options_, "is"), identity_of(options_), "wetness of " + options_.name)) return;
   for (const auto& [what, counts] : {std::pair("pairs", pairs_), std::pair("walls", walls_)}) {
     const auto host = Kokkos::create_mirror_view(counts);
     file.read_into(path_of(options_, what), host);

@@ -1,11 +1,8 @@
 #include "spray/zone_visits.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "core/checkpoint.hpp"
-#include "core/log.hpp"
+#include "spray/region_identity.hpp"
 
 namespace pellicle::spray {
 namespace {
@@ -173,12 +170,6 @@ void from_file(const core::CheckpointReader& file, const std::string& name,
   Kokkos::deep_copy(counts, host);
 }
 
-// What makes a zone another one.
-std::string identity_of(const ZoneOptions& o) {
-  return fmt::format("{}; absence {}, longest {}, {} bins, {} size classes", describe(o.shape),
-                     o.shortest_absence, o.longest_time, o.bins, o.size_classes);
-}
-
 std::string path_of(const ZoneOptions& options, const char* what) {
   return "zones/" + options.name + "/" + what;
 }
@@ -278,12 +269,7 @@ void ZoneVisits::save(core::CheckpointWriter& file, Index count) const {
 
 void ZoneVisits::load(const core::CheckpointReader& file, Index count) {
   reset(count);
-  if (!file.has(path_of(options_, "is")) ||
-      file.read_string(path_of(options_, "is")) != identity_of(options_)) {
-    core::log().warn("the zone {} is new or has changed since the checkpoint: its counts begin now",
-                     options_.name);
-    return;
-  }
+  if (!goes_on(file, path_of(options_, "is"), identity_of(options_), "zone " + options_.name)) return;
   start_ = file.read_double(path_of(options_, "start"));
   visits_.load(file, count);
   cycles_.load(file, count);
