@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/warn.hpp"
 
 namespace pellicle::core {
 
@@ -128,5 +129,7 @@ Log& log() {
   static Log instance;
   return instance;
 }
+
+void warn(std::string_view text) { log().message(Log::Level::warning, text); }
 
 }  // namespace pellicle::core

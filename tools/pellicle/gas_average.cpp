@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/hdf5_file.hpp"
-#include "core/log.hpp"
 #include "core/running_moments.hpp"
+#include "core/warn.hpp"
 #include "tools/pellicle/snapshots.hpp"
 
 namespace pellicle::tools {
@@ -78,9 +78,9 @@ void GasAverage::load(const core::CheckpointReader& checkpoint) {
   for (Field& field : fields_) {
     const std::string path = "output/average/" + field.name;
     if (!checkpoint.has(path + "/from") || checkpoint.read_int64(path + "/from") != window_.from) {
-      core::log().warn(
-          "the average of the gas's {} is new or has changed since the checkpoint: it begins now",
-          field.name);
+      const std::string text = "the average of the gas's " + field.name +
+                               " is new or has changed since the checkpoint: it begins now";
+      core::warn(text);
       continue;
     }
     last_ = checkpoint.read_int64("output/average/last");
